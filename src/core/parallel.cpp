@@ -1,0 +1,67 @@
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include <sched.h>
+
+#include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+namespace mote {
+
+void parallel_for(size_t count, size_t grain, const std::function<void(size_t, size_t)>& f)
+{
+    grain = std::max<size_t>(grain, 1);
+    const size_t chunks = (count + grain - 1) / grain;
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, chunks, 1),
+                      [&](const tbb::blocked_range<size_t>& range) {
+                          for (size_t c = range.begin(); c != range.end(); ++c) {
+                              f(c * grain, std::min(count, (c + 1) * grain));
+                          }
+                      });
+}
+
+void for_each_tile(int width, int height, const std::function<void(const Tile&)>& f)
+{
+    constexpr int size = 16;
+    const int columns = (width + size - 1) / size;
+    const int rows = (height + size - 1) / size;
+    if (columns <= 0 || rows <= 0) return;
+    const size_t tiles = static_cast<size_t>(columns) * static_cast<size_t>(rows);
+    parallel_for(tiles, 1, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i != end; ++i) {
+            const int x = static_cast<int>(i % static_cast<size_t>(columns)) * size;
+            const int y = static_cast<int>(i / static_cast<size_t>(columns)) * size;
+            f({x, y, std::min(x + size, width), std::min(y + size, height)});
+        }
+    });
+}
+
+int available_threads()
+{
+    cpu_set_t set;
+    CPU_ZERO(&set);
+    int count = 1;
+    if (sched_getaffinity(0, sizeof set, &set) == 0) count = std::max(1, CPU_COUNT(&set));
+    if (const char* slurm = std::getenv("SLURM_CPUS_PER_TASK")) {
+        const int granted = std::atoi(slurm);
+        if (granted > 0) count = std::min(count, granted);
+    }
+    return count;
+}
+
+struct ThreadLimit::Impl {
+    explicit Impl(size_t count) : control(tbb::global_control::max_allowed_parallelism, count) {}
+    tbb::global_control control;
+};
+
+ThreadLimit::ThreadLimit(int count) : impl_(new Impl(static_cast<size_t>(std::max(1, count)))) {}
+
+ThreadLimit::~ThreadLimit()
+{
+    delete impl_;
+}
+
+}  // namespace mote

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace mote {
+
+/// Calls f(begin, end) over disjoint chunks of [0, count), in parallel. Chunk borders depend only
+/// on `grain`, never on the thread count. Exceptions thrown by f reach the caller.
+void parallel_for(size_t count, size_t grain, const std::function<void(size_t, size_t)>& f);
+
+/// A rectangle of pixels, [x0,x1) x [y0,y1).
+struct Tile {
+    int x0, y0, x1, y1;
+};
+
+/// Calls f(tile) for 16x16 tiles covering the image, in parallel. A tile is the unit of scheduling:
+/// per-thread set-up belongs here, pixels do not depend on each other.
+void for_each_tile(int width, int height, const std::function<void(const Tile&)>& f);
+
+/// Threads this process may use: the affinity mask and SLURM_CPUS_PER_TASK, not the machine's total.
+[[nodiscard]] int available_threads();
+
+/// Limits TBB to `count` threads while it lives (count >= 1).
+class ThreadLimit {
+  public:
+    explicit ThreadLimit(int count);
+    ~ThreadLimit();
+    ThreadLimit(const ThreadLimit&) = delete;
+    ThreadLimit& operator=(const ThreadLimit&) = delete;
+
+  private:
+    struct Impl;
+    Impl* impl_;
+};
+
+}  // namespace mote

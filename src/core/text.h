@@ -1,0 +1,20 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace mote {
+
+/// " (did you mean \"x\"?)" for the entry of `known` nearest to `word` by edit distance, or "" when
+/// none is near enough to be meant.
+[[nodiscard]] std::string did_you_mean(std::string_view word, std::span<const std::string> known);
+
+/// Third-party or file text made safe for one line of a message: control characters replaced,
+/// cut after `max_length` bytes.
+[[nodiscard]] std::string printable(std::string_view text, size_t max_length = 200);
+
+/// "1.5 GB" from a byte count.
+[[nodiscard]] std::string format_bytes(double bytes);
+
+}  // namespace mote

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "core/rng.h"
+#include "reference/light_sampler.h"
+#include "scene/path_tracer_params.h"
+#include "scene/scene.h"
+
+namespace mote {
+
+/// What one camera path brings. The parts of L are disjoint and sum to it.
+struct PathResult {
+    Spectrum direct{0.0f};      ///< one scattering event
+    Spectrum indirect{0.0f};    ///< two and more
+    Spectrum emission{0.0f};    ///< from emissive media straight to the camera
+    Spectrum background{0.0f};  ///< environment and area lights seen through the media
+    float transmittance = 1.0f; ///< unbiased estimate, camera to infinity
+    float depth = infinity;     ///< of the first collision [m]
+    Spectrum albedo{0.0f};      ///< at the first collision
+    bool truncated = false;     ///< max_bounces cut a path that could have gone on
+
+    [[nodiscard]] Spectrum L() const { return direct + indirect + emission + background; }
+};
+
+/// Traces one path along a camera ray. Shares phase functions, lights and media walks with the
+/// rest of mote but no reservoir, resampling-MIS or shift code: it is the judge of those.
+[[nodiscard]] PathResult trace_path(const Scene& scene, const LightSampler& lights,
+                                    const PathTracerParams& params, const Ray& ray, Rng& rng);
+
+}  // namespace mote

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "core/math.h"
+
+namespace mote {
+
+struct EnvironmentMap;
+
+/// Point light. intensity [W/sr].
+struct PointLight {
+    Vec3 position{0.0f};
+    Spectrum intensity{1.0f};
+};
+
+/// Parallel light from infinity. `direction` points from the scene towards the light [unit];
+/// irradiance [W/m^2] on a plane facing it.
+struct DistantLight {
+    Vec3 direction{0.0f, 1.0f, 0.0f};
+    Spectrum irradiance{1.0f};
+};
+
+/// Sphere emitting `radiance` [W/(m^2 sr)] outwards. Not an obstacle to other light.
+struct SphereLight {
+    Vec3 position{0.0f};
+    float radius = 0.1f;
+    Spectrum radiance{1.0f};
+};
+
+/// Parallelogram corner + [0,1] edge_u + [0,1] edge_v, emitting `radiance` on the side that
+/// cross(edge_u, edge_v) points to (both sides if two_sided). Not an obstacle to other light.
+struct QuadLight {
+    Vec3 corner{0.0f};
+    Vec3 edge_u{1.0f, 0.0f, 0.0f};
+    Vec3 edge_v{0.0f, 0.0f, 1.0f};
+    Spectrum radiance{1.0f};
+    bool two_sided = false;
+};
+
+/// Light from all directions: a constant, or radiance times a latitude-longitude image.
+struct EnvironmentLight {
+    Spectrum radiance{1.0f};
+    std::shared_ptr<const EnvironmentMap> map;  ///< null: constant
+    glm::mat3 map_from_world{1.0f};
+};
+
+/// To add a light: write its struct, list it here, then fix the compile errors in light.cpp.
+using Light = std::variant<PointLight, DistantLight, SphereLight, QuadLight>;
+
+/// Light arriving at a point along one sampled direction.
+struct LightSample {
+    Vec3 wi{0.0f};           ///< towards the light [unit]
+    float distance = 0.0f;   ///< infinity for distant lights and environments [m]
+    Spectrum Li{0.0f};       ///< unoccluded radiance (delta lights: irradiance at x facing wi)
+    float pdf_dir = 0.0f;    ///< [1/sr]; 1 for delta lights
+    bool is_delta = false;   ///< phase sampling can never hit it
+};
+
+/// Samples a direction from world point x towards the light, u in [0,1)^2. Empty if no light
+/// reaches x.
+[[nodiscard]] std::optional<LightSample> sample_light(const Light& light, Vec3 x, Vec2 u);
+
+/// Density [1/sr] with which sample_light picks wi from x; 0 for delta lights and misses.
+[[nodiscard]] float light_pdf(const Light& light, Vec3 x, Vec3 wi);
+
+/// Where a ray from x along wi first meets an area light's emitting side.
+struct LightHit {
+    float distance = infinity;
+    Spectrum Le{0.0f};
+};
+[[nodiscard]] std::optional<LightHit> hit_light(const Light& light, Vec3 x, Vec3 wi);
+
+/// Total emitted power [W] (distant lights: through a disk of the scene's radius).
+[[nodiscard]] float light_power(const Light& light, float scene_radius);
+
+}  // namespace mote

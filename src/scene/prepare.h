@@ -1,0 +1,50 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "scene/description.h"
+#include "scene/scene.h"
+
+namespace mote {
+
+/// What a frame's preparation did; zero for whatever the frame did not need.
+struct PrepareStats {
+    double particle_seconds = 0.0;
+    double rasterize_seconds = 0.0;
+    double load_seconds = 0.0;
+    double brick_seconds = 0.0;
+    int grids_built = 0;
+    int grids_reused = 0;          ///< unchanged since an earlier frame of this run
+    int64_t particles = 0;
+    size_t brick_bytes = 0;
+    int64_t non_finite_values = 0; ///< set to 0 on load
+    int64_t negative_values = 0;   ///< clamped to 0 on load
+};
+
+/// Keeps grids between frames, keyed by what they were built from.
+class SceneCache {
+  public:
+    SceneCache();
+    ~SceneCache();
+    SceneCache(const SceneCache&) = delete;
+    SceneCache& operator=(const SceneCache&) = delete;
+    struct Impl;
+    [[nodiscard]] Impl& impl() { return *impl_; }
+
+  private:
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Which optional grids the renderer needs beyond what shading needs.
+struct PrepareNeeds {
+    bool velocity = false;  ///< motion AOV or temporal reuse
+};
+
+/// Everything of `description` at a whole frame, ready to render. The one place where particles,
+/// grids and media meet. Throws Error(Input) naming file and grid.
+[[nodiscard]] Scene prepare_frame(const SceneDescription& description, int frame,
+                                  const PrepareNeeds& needs, SceneCache& cache,
+                                  PrepareStats& stats);
+
+}  // namespace mote
