@@ -8,6 +8,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 namespace mote {
 
@@ -50,6 +51,14 @@ int available_threads()
         if (granted > 0) count = std::min(count, granted);
     }
     return count;
+}
+
+void run_with_threads(int count, const std::function<void()>& f)
+{
+    const ThreadLimit limit(count);
+    // The implicit arena has one slot per core, so a larger count needs an arena of its own.
+    tbb::task_arena arena(std::max(1, count));
+    arena.execute([&] { f(); });
 }
 
 struct ThreadLimit::Impl {

@@ -18,10 +18,16 @@ struct Tile {
 /// per-thread set-up belongs here, pixels do not depend on each other.
 void for_each_tile(int width, int height, const std::function<void(const Tile&)>& f);
 
-/// Threads this process may use: the affinity mask and SLURM_CPUS_PER_TASK, not the machine's total.
+/// Threads this process may use: the affinity mask and SLURM_CPUS_PER_TASK, not the machine's
+/// total.
 [[nodiscard]] int available_threads();
 
-/// Limits TBB to `count` threads while it lives (count >= 1).
+/// Runs f with exactly `count` threads (>= 1) for every parallel loop inside it, more than the
+/// machine has cores included. What `--threads` means.
+void run_with_threads(int count, const std::function<void()>& f);
+
+/// Limits TBB to `count` threads while it lives (count >= 1). Cannot raise their number above the
+/// core count: run_with_threads does.
 class ThreadLimit {
   public:
     explicit ThreadLimit(int count);
