@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "particles/particle_set.h"
+#include "particles/sequence.h"
 
 namespace mote {
 
@@ -15,36 +16,24 @@ enum class EmitterKind { Plume, Burst, Disk, Snow };
 /// A procedural particle source. Lengths are in metres, times in seconds, angles in degrees.
 struct EmitterParams {
     EmitterKind kind = EmitterKind::Plume;
-    int64_t count = 100'000;      ///< particles alive in a full frame, [1, 10^8]
-    uint32_t seed = 1;            ///< which particles; same seed, same cloud
-    Vec3 position{0.0f};          ///< centre of the source [m]
-    float size = 0.25f;           ///< radius of the source [m] (snow: half the box's edge)
-    float speed = 1.0f;           ///< typical launch, rise, orbit or fall speed [m/s]
-    float lifetime = 4.0f;        ///< seconds from birth to death
-    float turbulence = 0.5f;      ///< curl-noise speed [m/s]
-    float turbulence_size = 0.5f; ///< size of the largest curl-noise eddies [m]
-    float drag = 1.0f;            ///< velocity decay [1/s] (burst)
-    float gravity = 0.0f;         ///< downward acceleration [m/s^2], along -y
-    float spread = 15.0f;         ///< half angle of the launch cone [degrees] (plume)
-    float radius = 0.03f;         ///< kernel support radius of a particle [m]
-    float radius_growth = 0.0f;   ///< added to the radius per second of age [m/s]
-    float mass = 1.0f;            ///< total mass of the particles alive in a full frame [kg]
-    float temperature = 300.0f;   ///< at birth [K]
-    float cooling = 0.0f;         ///< exponential approach to 300 K [1/s]
-    Spectrum color{1.0f};         ///< albedo colour, [0,1]
-    float start_time = 0.0f;      ///< seconds at which emission starts
-};
-
-/// What to show for frames outside a cache's range.
-enum class OutsideRange { Hide, Hold, Loop };
-
-/// A particle or volume file sequence on disk. `pattern` may hold "####", "%04d" or "$F4".
-struct SequenceParams {
-    std::string pattern;   ///< path, relative to the scene file
-    int first = 1;         ///< first frame of the sequence on disk
-    int last = 0;          ///< last frame; less than `first`: found by looking at the folder
-    int offset = 0;        ///< file frame = scene frame + offset
-    OutsideRange outside = OutsideRange::Hold;
+    int64_t count = 100'000;       ///< particles alive in a full frame, [1, 10^8]
+    uint32_t seed = 1;             ///< which particles; same seed, same cloud
+    Vec3 position{0.0f};           ///< centre of the source [m]
+    float size = 0.25f;            ///< radius of the source [m] (snow: half the box's edge)
+    float speed = 1.0f;            ///< typical launch, rise, orbit or fall speed [m/s]
+    float lifetime = 4.0f;         ///< seconds from birth to death
+    float turbulence = 0.5f;       ///< curl-noise speed [m/s]
+    float turbulence_size = 0.5f;  ///< size of the largest curl-noise eddies [m]
+    float drag = 1.0f;             ///< velocity decay [1/s] (burst)
+    float gravity = 0.0f;          ///< downward acceleration [m/s^2], along -y
+    float spread = 15.0f;          ///< half angle of the launch cone [degrees] (plume)
+    float radius = 0.03f;          ///< kernel support radius of a particle [m]
+    float radius_growth = 0.0f;    ///< added to the radius per second of age [m/s]
+    float mass = 1.0f;             ///< total mass of the particles alive in a full frame [kg]
+    float temperature = 300.0f;    ///< at birth [K]
+    float cooling = 0.0f;          ///< exponential approach to 300 K [1/s]
+    Spectrum color{1.0f};          ///< albedo colour, [0,1]
+    float start_time = 0.0f;       ///< seconds at which emission starts
 };
 
 /// Time unit of a cache's velocity attribute.
@@ -57,11 +46,11 @@ struct CacheParams {
     /// are looked for under their usual names.
     std::map<std::string, std::string> attributes;
     VelocityUnit velocity_unit = VelocityUnit::PerSecond;
-    float scale = 1.0f;            ///< metres per file unit of length
-    float radius = 0.03f;          ///< support radius [m] where the file has none
-    float radius_scale = 1.0f;     ///< multiplies the file's radius
-    float mass = 1.0f;             ///< total mass [kg] where the file has no masses
-    float max_particles = 2e8f;    ///< refuse larger files
+    float scale = 1.0f;          ///< metres per file unit of length
+    float radius = 0.03f;        ///< support radius [m] where the file has none
+    float radius_scale = 1.0f;   ///< multiplies the file's radius
+    float mass = 1.0f;           ///< total mass [kg] where the file has no masses
+    float max_particles = 2e8f;  ///< refuse larger files
 };
 
 using SourceParams = std::variant<EmitterParams, CacheParams>;
