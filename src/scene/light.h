@@ -24,7 +24,8 @@ struct DistantLight {
     Spectrum irradiance{1.0f};
 };
 
-/// Sphere emitting `radiance` [W/(m^2 sr)] outwards. Not an obstacle to other light.
+/// Sphere emitting `radiance` [W/(m^2 sr)] outwards: dark from inside. Not an obstacle to other
+/// light.
 struct SphereLight {
     Vec3 position{0.0f};
     float radius = 0.1f;
@@ -45,7 +46,7 @@ struct QuadLight {
 struct EnvironmentLight {
     Spectrum radiance{1.0f};
     std::shared_ptr<const EnvironmentMap> map;  ///< null: constant
-    glm::mat3 map_from_world{1.0f};
+    glm::mat3 map_from_world{1.0f};             ///< a rotation
 };
 
 /// To add a light: write its struct, list it here, then fix the compile errors in light.cpp.
@@ -53,11 +54,11 @@ using Light = std::variant<PointLight, DistantLight, SphereLight, QuadLight>;
 
 /// Light arriving at a point along one sampled direction.
 struct LightSample {
-    Vec3 wi{0.0f};           ///< towards the light [unit]
-    float distance = 0.0f;   ///< infinity for distant lights and environments [m]
-    Spectrum Li{0.0f};       ///< unoccluded radiance (delta lights: irradiance at x facing wi)
-    float pdf_dir = 0.0f;    ///< [1/sr]; 1 for delta lights
-    bool is_delta = false;   ///< phase sampling can never hit it
+    Vec3 wi{0.0f};          ///< towards the light [unit]
+    float distance = 0.0f;  ///< infinity for distant lights and environments [m]
+    Spectrum Li{0.0f};      ///< unoccluded radiance (delta lights: irradiance at x facing wi)
+    float pdf_dir = 0.0f;   ///< [1/sr]; 1 for delta lights
+    bool is_delta = false;  ///< phase sampling can never hit it
 };
 
 /// Samples a direction from world point x towards the light, u in [0,1)^2. Empty if no light
@@ -76,5 +77,8 @@ struct LightHit {
 
 /// Total emitted power [W] (distant lights: through a disk of the scene's radius).
 [[nodiscard]] float light_power(const Light& light, float scene_radius);
+
+/// Box around a light; empty for distant lights.
+[[nodiscard]] Bounds3 light_bounds(const Light& light);
 
 }  // namespace mote

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/buffer2d.h"
+#include "core/distribution.h"
+#include "core/rng.h"
+#include "scene/light.h"
+
+namespace mote {
+
+/// Latitude-longitude image with what is needed to sample it. Row 0 is straight up (+y), the
+/// image's centre looks along -z with +x to its right; bilinear between pixel centres, wrapped
+/// around horizontally.
+struct EnvironmentMap {
+    Buffer2D<Spectrum> pixels;
+    AliasTable table;  ///< over pixels: luminance of the reconstruction times solid angle
+};
+
+/// Image -> environment. Negative and non-finite pixels count as black and are reported once on
+/// the log; an image without pixels throws Error(Input). `name` is for the messages. Black images
+/// are fine: they give no light.
+[[nodiscard]] std::shared_ptr<const EnvironmentMap> make_environment_map(Buffer2D<Spectrum> pixels,
+                                                                         const std::string& name);
+
+/// Radiance [W/(m^2 sr)] arriving from world direction wi [unit].
+[[nodiscard]] Spectrum environment_radiance(const EnvironmentLight& light, Vec3 wi);
+
+/// Samples a direction: uniformly for a constant, else in proportion to the image's luminance.
+/// Empty if the environment is black.
+[[nodiscard]] std::optional<LightSample> sample_environment(const EnvironmentLight& light,
+                                                            Rng& rng);
+
+/// Density [1/sr] of sample_environment.
+[[nodiscard]] float environment_pdf(const EnvironmentLight& light, Vec3 wi);
+
+/// Integral of the luminance over all directions [W/m^2]; 0 for a black environment.
+[[nodiscard]] float environment_fluence(const EnvironmentLight& light);
+
+}  // namespace mote
