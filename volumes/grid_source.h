@@ -18,7 +18,7 @@ struct ProceduralParams {
     float voxel_size = 0.02f;  ///< [m]
     float noise = 0.5f;        ///< strength of the turbulence, [0,1]
     uint32_t seed = 1;
-    float evolve = 0.0f;       ///< noise phase per second: animates the turbulence
+    float evolve = 0.0f;  ///< noise phase per second: animates the turbulence
 };
 
 /// Limits and counts of reading an untrusted grid file.

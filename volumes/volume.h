@@ -16,11 +16,11 @@ namespace mote {
 ///   T(x) = temperature_scale * temperature grid + temperature_offset.
 /// blackbody_rgb has luminance 1. The first term needs no density, the second follows it.
 struct Emission {
-    float emission_scale = 0.0f;     ///< [1/m] per unit of the emission grid
+    float emission_scale = 0.0f;  ///< [1/m] per unit of the emission grid
     Spectrum emission_color{1.0f};
-    float blackbody_scale = 0.0f;    ///< radiance of an opaque medium at 1500 K
-    float temperature_scale = 1.0f;  ///< [K] per unit of the temperature grid
-    float temperature_offset = 0.0f; ///< [K]
+    float blackbody_scale = 0.0f;     ///< radiance of an opaque medium at 1500 K
+    float temperature_scale = 1.0f;   ///< [K] per unit of the temperature grid
+    float temperature_offset = 0.0f;  ///< [K]
 
     [[nodiscard]] bool is_on() const { return emission_scale > 0.0f || blackbody_scale > 0.0f; }
 };
@@ -32,12 +32,12 @@ struct Emission {
 struct Volume {
     std::string name;
     std::shared_ptr<const BrickGrid> density;
-    std::shared_ptr<const BrickGrid> temperature;      ///< null: none
-    std::shared_ptr<const BrickGrid> emission;         ///< null: none
-    std::shared_ptr<const ColorGrid> color;            ///< null: `albedo` everywhere
-    std::shared_ptr<const ColorGrid> velocity;         ///< [m/s] in object space; null: at rest
-    float density_scale = 1.0f;                        ///< sigma_t per density unit [1/m]
-    Spectrum albedo{1.0f};                             ///< multiplies `color` where there is one
+    std::shared_ptr<const BrickGrid> temperature;  ///< null: none
+    std::shared_ptr<const BrickGrid> emission;     ///< null: none
+    std::shared_ptr<const ColorGrid> color;        ///< null: `albedo` everywhere
+    std::shared_ptr<const ColorGrid> velocity;     ///< [m/s] in object space; null: at rest
+    float density_scale = 1.0f;                    ///< sigma_t per density unit [1/m]
+    Spectrum albedo{1.0f};                         ///< multiplies `color` where there is one
     Phase phase;
     Emission emission_params;
     MovingTransform world_from_object;
