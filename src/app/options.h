@@ -1,0 +1,98 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace mote {
+
+/// What every command understands.
+struct LogOptions {
+    bool quiet = false;  ///< errors only, no progress
+    int verbosity = 0;   ///< 0: warnings; 1: what is done; 2: details
+    std::string file;    ///< also log there; empty: nowhere
+    bool json = false;   ///< one JSON object per line on stderr
+};
+
+/// What to do with a frame whose file exists.
+enum class ExistingMode {
+    Overwrite,
+    Skip,    ///< keep it if it opens and is complete
+    Verify,  ///< keep it if also its size, scene hash and layers are those of this render
+};
+
+enum class ProgressMode { Auto, Json, None };
+
+struct RenderOptions {
+    std::string scene;
+    std::vector<std::string> overrides;  ///< "a.b=value", applied after the scene is read
+    std::string frames;                  ///< empty: the scene's range
+    std::string output;                  ///< empty: the scene's
+    std::string preview;                 ///< empty: the scene's
+    std::optional<std::string> aovs;
+    ExistingMode existing = ExistingMode::Overwrite;
+    ProgressMode progress = ProgressMode::Auto;
+    std::string stats;
+    int threads = 0;            ///< 0: those this process may use
+    double memory_limit = 0.0;  ///< [bytes]; 0: none
+    bool dry_run = false;
+    bool reproducible = false;  ///< no times in the files
+    LogOptions log;
+};
+
+struct CheckOptions {
+    std::string scene;
+    std::vector<std::string> overrides;
+    std::string frames;  ///< empty: first and last frame of the scene
+    LogOptions log;
+};
+
+struct InfoOptions {
+    std::string file;
+    std::vector<std::string> overrides;
+    std::optional<int> frame;  ///< for patterns and scenes
+    double fps = 24.0;         ///< for displacements of plain files
+    LogOptions log;
+};
+
+struct CacheOptions {
+    std::string input;  ///< scene, or particle file pattern
+    std::vector<std::string> overrides;
+    std::string particles;  ///< name of the scene's particle system
+    std::string frames;
+    std::string points;                   ///< pattern of VDB points; empty: none
+    std::string grids;                    ///< pattern of VDB density grids; empty: none
+    std::optional<float> voxel_size;      ///< [m]; empty: the scene's
+    double fps = 24.0;                    ///< plain files
+    bool velocity_per_frame = false;      ///< plain files
+    std::vector<std::string> attributes;  ///< plain files: "radius=pscale"
+    ExistingMode existing = ExistingMode::Overwrite;
+    ProgressMode progress = ProgressMode::Auto;
+    int threads = 0;
+    LogOptions log;
+};
+
+struct SheetOptions {
+    std::string output;
+    std::vector<std::string> inputs;
+    int columns = 0;  ///< 0: near a square
+    LogOptions log;
+};
+
+struct SchemaOptions {
+    bool markdown = false;
+};
+
+struct VersionOptions {};
+
+/// Text to print and be done: help.
+struct PrintText {
+    std::string text;
+};
+
+using CommandLine = std::variant<PrintText, RenderOptions, CheckOptions, InfoOptions, CacheOptions,
+                                 SheetOptions, SchemaOptions, VersionOptions>;
+
+}  // namespace mote
