@@ -1,0 +1,340 @@
+#include "particles/rasterize.h"
+
+#include <bit>
+
+#include <fmt/core.h>
+#include <spdlog/spdlog.h>
+
+#include "core/error.h"
+#include "core/parallel.h"
+#include "core/text.h"
+#include "particles/rasterize_leaf.h"
+#include "particles/rasterize_plan.h"
+#include "particles/rasterize_tiles.h"
+
+namespace mote {
+namespace {
+
+using FloatLeaf = openvdb::FloatTree::LeafNodeType;
+using Vec3Leaf = openvdb::Vec3STree::LeafNodeType;
+
+/// The leaves of all grids at one place. Until finished, channels hold sums weighted by density.
+struct LeafSet {
+    std::unique_ptr<FloatLeaf> density;
+    std::unique_ptr<Vec3Leaf> velocity;
+    std::unique_ptr<FloatLeaf> temperature;
+    std::unique_ptr<Vec3Leaf> color;
+};
+
+/// One tile of the result. `leaves` has one entry per set bit of `allocated`, in bit order.
+struct GridTile {
+    TileKey key;
+    LeafMask touched{};
+    LeafMask allocated{};
+    std::vector<std::span<const TileSplat>> segments;  ///< of this wave, in particle order
+    std::vector<LeafSet> leaves;
+};
+
+/// Which attributes are rasterised, and their components in the order velocity, temperature,
+/// colour.
+struct ChannelList {
+    bool velocity;
+    bool temperature;
+    bool color;
+    std::vector<AttributeComponent> components;
+};
+
+ChannelList make_channels(const ParticleSet& particles, const RasterChannels& wanted)
+{
+    ChannelList list{wanted.velocity && !particles.velocity.empty(),
+                     wanted.temperature && !particles.temperature.empty(),
+                     wanted.color && !particles.color.empty(),
+                     {}};
+    const auto add = [&](const float* data, size_t stride) {
+        for (size_t c = 0; c < stride; ++c) list.components.push_back({data + c, stride});
+    };
+    if (list.velocity) add(&particles.velocity[0].x, 3);
+    if (list.temperature) add(particles.temperature.data(), 1);
+    if (list.color) add(&particles.color[0].x, 3);
+    return list;
+}
+
+size_t leaf_count(const LeafMask& mask)
+{
+    size_t count = 0;
+    for (const uint64_t word : mask) count += static_cast<size_t>(std::popcount(word));
+    return count;
+}
+
+bool has_leaf(const LeafMask& mask, int k)
+{
+    return (mask[static_cast<size_t>(k) / 64] >> (k % 64) & 1u) != 0;
+}
+
+openvdb::Coord leaf_origin(TileKey key, int k)
+{
+    return {key.x * tile_size + leaf_size * (k / 64), key.y * tile_size + leaf_size * (k / 8 % 8),
+            key.z * tile_size + leaf_size * (k % 8)};
+}
+
+LeafSet make_leaves(const openvdb::Coord& origin, const ChannelList& channels)
+{
+    LeafSet set;
+    const openvdb::Vec3f zero(0.0f);
+    set.density = std::make_unique<FloatLeaf>(origin, 0.0f);
+    if (channels.velocity) set.velocity = std::make_unique<Vec3Leaf>(origin, zero);
+    if (channels.temperature) set.temperature = std::make_unique<FloatLeaf>(origin, 0.0f);
+    if (channels.color) set.color = std::make_unique<Vec3Leaf>(origin, zero);
+    return set;
+}
+
+/// Allocates the leaves that this wave touches first.
+void allocate_leaves(GridTile& tile, const ChannelList& channels)
+{
+    if (tile.touched == tile.allocated) return;
+    std::vector<LeafSet> leaves;
+    leaves.reserve(leaf_count(tile.touched));
+    size_t old = 0;
+    for (int k = 0; k < tile_leaves; ++k) {
+        if (!has_leaf(tile.touched, k)) continue;
+        const bool exists = has_leaf(tile.allocated, k);
+        leaves.push_back(exists ? std::move(tile.leaves[old++])
+                                : make_leaves(leaf_origin(tile.key, k), channels));
+    }
+    tile.leaves = std::move(leaves);
+    tile.allocated = tile.touched;
+}
+
+void add_field(const std::array<float, leaf_voxels>& sums, FloatLeaf& leaf)
+{
+    float* values = leaf.buffer().data();
+    for (size_t v = 0; v < leaf_voxels; ++v) values[v] += sums[v];
+}
+
+void add_fields(const std::array<float, leaf_voxels>* sums, Vec3Leaf& leaf)
+{
+    openvdb::Vec3f* values = leaf.buffer().data();
+    for (size_t v = 0; v < leaf_voxels; ++v) {
+        values[v] += openvdb::Vec3f(sums[0][v], sums[1][v], sums[2][v]);
+    }
+}
+
+template <int Channels>
+void add_splats(std::span<const TileSplat> splats, const ChannelList& channels, LeafSet& leaves)
+{
+    LeafSums<Channels> sums;
+    accumulate_leaf<Channels>(splats, channels.components.data(), sums);
+    const auto* field = sums.field.data();
+    add_field(*field++, *leaves.density);
+    if constexpr (Channels > 0) {
+        if (leaves.velocity) {
+            add_fields(field, *leaves.velocity);
+            field += 3;
+        }
+        if (leaves.temperature) add_field(*field++, *leaves.temperature);
+        if (leaves.color) add_fields(field, *leaves.color);
+    }
+}
+
+void add_splats(std::span<const TileSplat> splats, const ChannelList& channels, LeafSet& leaves)
+{
+    switch (channels.components.size()) {
+        case 0: return add_splats<0>(splats, channels, leaves);
+        case 1: return add_splats<1>(splats, channels, leaves);
+        case 3: return add_splats<3>(splats, channels, leaves);
+        case 4: return add_splats<4>(splats, channels, leaves);
+        case 6: return add_splats<6>(splats, channels, leaves);
+        default: return add_splats<7>(splats, channels, leaves);
+    }
+}
+
+/// Adds this wave's splats of one tile to its leaves.
+void rasterize_tile(GridTile& tile, const ChannelList& channels)
+{
+    constexpr size_t max_copies = 1'000'000;  // 24 MB
+    allocate_leaves(tile, channels);
+    std::vector<int> number;  // of each entry of tile.leaves
+    number.reserve(tile.leaves.size());
+    for (int k = 0; k < tile_leaves; ++k) {
+        if (has_leaf(tile.allocated, k)) number.push_back(k);
+    }
+    LeafLists lists;
+    size_t segment = 0;
+    size_t offset = 0;
+    while (next_leaf_lists(tile.segments, max_copies, segment, offset, lists)) {
+        parallel_for(number.size(), 16, [&](size_t begin, size_t end) {
+            for (size_t i = begin; i < end; ++i) {
+                const auto splats = lists.of_leaf(number[i]);
+                if (!splats.empty()) add_splats(splats, channels, tile.leaves[i]);
+            }
+        });
+    }
+}
+
+template <class Leaf>
+void finish_mean(const FloatLeaf& density, Leaf& leaf)
+{
+    leaf.setValueMask(density.getValueMask());
+    const float* weight = density.buffer().data();
+    auto* values = leaf.buffer().data();
+    for (size_t v = 0; v < leaf_voxels; ++v) {
+        if (weight[v] > 0.0f) values[v] /= weight[v];
+    }
+}
+
+/// Sets the active voxels and turns weighted sums into means. Leaves without mass are dropped.
+void finish(LeafSet& set)
+{
+    const float* density = set.density->buffer().data();
+    FloatLeaf::NodeMaskType mask;
+    for (openvdb::Index w = 0; w < leaf_voxels / 64; ++w) {
+        uint64_t bits = 0;
+        for (uint32_t i = 0; i < 64; ++i) {
+            bits |= static_cast<uint64_t>(density[64 * w + i] > 0.0f) << i;
+        }
+        mask.getWord<openvdb::Index64>(w) = bits;
+    }
+    if (mask.isOff()) {
+        set = {};
+        return;
+    }
+    set.density->setValueMask(mask);
+    if (set.velocity) finish_mean(*set.density, *set.velocity);
+    if (set.temperature) finish_mean(*set.density, *set.temperature);
+    if (set.color) finish_mean(*set.density, *set.color);
+}
+
+template <class Grid>
+typename Grid::Ptr make_grid(const char* name, float voxel_size)
+{
+    auto grid = Grid::create();
+    grid->setName(name);
+    grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+    grid->setTransform(
+        openvdb::math::Transform::createLinearTransform(static_cast<double>(voxel_size)));
+    return grid;
+}
+
+/// Hands the leaves of one field over to a grid.
+template <class Grid, class Leaf>
+typename Grid::Ptr build_grid(const char* name, const RasterizeParams& params,
+                              std::vector<GridTile>& tiles, std::unique_ptr<Leaf> LeafSet::*field)
+{
+    auto grid = make_grid<Grid>(name, params.voxel_size);
+    auto accessor = grid->getAccessor();
+    for (GridTile& tile : tiles) {
+        for (LeafSet& set : tile.leaves) {
+            if (set.*field) accessor.addLeaf((set.*field).release());
+        }
+    }
+    return grid;
+}
+
+/// The tiles seen so far, numbered by a table.
+struct TileMap {
+    TileTable table;
+    std::vector<GridTile> tiles;
+    int64_t voxels = 0;  ///< in all leaves touched so far
+
+    void add(const BinnedChunk& chunk)
+    {
+        for (size_t t = 0; t < chunk.keys.size(); ++t) {
+            const uint32_t number = table.find_or_add(chunk.keys[t]);
+            if (number == tiles.size()) tiles.push_back({chunk.keys[t], {}, {}, {}, {}});
+            GridTile& tile = tiles[number];
+            const size_t before = leaf_count(tile.touched);
+            for (size_t w = 0; w < tile.touched.size(); ++w) tile.touched[w] |= chunk.masks[t][w];
+            voxels += leaf_voxels * static_cast<int64_t>(leaf_count(tile.touched) - before);
+            tile.segments.push_back(chunk.of_tile(t));
+        }
+    }
+};
+
+void check_budget(const TileMap& map, const RasterizeParams& params)
+{
+    if (map.voxels <= params.max_voxels) return;
+    throw Error(ExitCode::Memory,
+                fmt::format("the particles touch more than {} voxels of {:g} m ({} for the density "
+                            "alone), over the limit of {}; raise voxel_size, lower the particles' "
+                            "radius, or raise max_voxels",
+                            map.voxels, params.voxel_size,
+                            format_bytes(4.0 * static_cast<double>(map.voxels)), params.max_voxels));
+}
+
+TileMap fill_tiles(const ParticleSet& particles, const RasterPlan& plan,
+                   const RasterizeParams& params, const ChannelList& channels)
+{
+    TileMap map;
+    size_t first = 0;
+    for (const size_t end : plan.wave_end) {
+        std::vector<BinnedChunk> binned(end - first);
+        parallel_for(binned.size(), 1, [&](size_t begin, size_t stop) {
+            for (size_t c = begin; c < stop; ++c) {
+                const ChunkRange& range = plan.chunks[first + c];
+                binned[c] = bin_chunk(particles, plan.rules, range.first, range.last);
+            }
+        });
+        for (const BinnedChunk& chunk : binned) map.add(chunk);
+        check_budget(map, params);
+        parallel_for(map.tiles.size(), 1, [&](size_t begin, size_t stop) {
+            for (size_t t = begin; t < stop; ++t) {
+                rasterize_tile(map.tiles[t], channels);
+                map.tiles[t].segments.clear();
+            }
+        });
+        first = end;
+    }
+    return map;
+}
+
+ParticleGrids rasterize_checked(const ParticleSet& particles, const RasterizeParams& params)
+{
+    openvdb::initialize();
+    const RasterPlan plan = make_raster_plan(particles, params);
+    if (plan.unusable > 0) {
+        spdlog::warn("{} of {} particles left out: no mass, or values that are not finite",
+                     plan.unusable, particles.size());
+    }
+    const ChannelList channels = make_channels(particles, params.channels);
+    TileMap map = fill_tiles(particles, plan, params, channels);
+    parallel_for(map.tiles.size(), 1, [&](size_t begin, size_t end) {
+        for (size_t t = begin; t < end; ++t) {
+            for (LeafSet& set : map.tiles[t].leaves) finish(set);
+        }
+    });
+
+    ParticleGrids grids;
+    grids.density =
+        build_grid<openvdb::FloatGrid>("density", params, map.tiles, &LeafSet::density);
+    if (channels.velocity) {
+        grids.velocity =
+            build_grid<openvdb::Vec3SGrid>("velocity", params, map.tiles, &LeafSet::velocity);
+    }
+    if (channels.temperature) {
+        grids.temperature =
+            build_grid<openvdb::FloatGrid>("temperature", params, map.tiles, &LeafSet::temperature);
+    }
+    if (channels.color) {
+        grids.color = build_grid<openvdb::Vec3SGrid>("Cd", params, map.tiles, &LeafSet::color);
+    }
+    return grids;
+}
+
+}  // namespace
+
+ParticleGrids rasterize(const ParticleSet& particles, const RasterizeParams& params)
+{
+    try {
+        return rasterize_checked(particles, params);
+    } catch (const std::bad_alloc&) {
+        throw Error(ExitCode::Memory, fmt::format("out of memory while rasterising {} particles; "
+                                                  "raise voxel_size or lower their count",
+                                                  particles.size()));
+    } catch (const openvdb::Exception& e) {
+        throw Error(ExitCode::Input,
+                    fmt::format("cannot make grids with voxel_size {:g} m: {}", params.voxel_size,
+                                printable(e.what())));
+    }
+}
+
+}  // namespace mote
