@@ -139,12 +139,18 @@ void add_splats(std::span<const TileSplat> splats, const ChannelList& channels, 
 void add_splats(std::span<const TileSplat> splats, const ChannelList& channels, LeafSet& leaves)
 {
     switch (channels.components.size()) {
-        case 0: return add_splats<0>(splats, channels, leaves);
-        case 1: return add_splats<1>(splats, channels, leaves);
-        case 3: return add_splats<3>(splats, channels, leaves);
-        case 4: return add_splats<4>(splats, channels, leaves);
-        case 6: return add_splats<6>(splats, channels, leaves);
-        default: return add_splats<7>(splats, channels, leaves);
+        case 0:
+            return add_splats<0>(splats, channels, leaves);
+        case 1:
+            return add_splats<1>(splats, channels, leaves);
+        case 3:
+            return add_splats<3>(splats, channels, leaves);
+        case 4:
+            return add_splats<4>(splats, channels, leaves);
+        case 6:
+            return add_splats<6>(splats, channels, leaves);
+        default:
+            return add_splats<7>(splats, channels, leaves);
     }
 }
 
@@ -253,12 +259,13 @@ struct TileMap {
 void check_budget(const TileMap& map, const RasterizeParams& params)
 {
     if (map.voxels <= params.max_voxels) return;
-    throw Error(ExitCode::Memory,
-                fmt::format("the particles touch more than {} voxels of {:g} m ({} for the density "
-                            "alone), over the limit of {}; raise voxel_size, lower the particles' "
-                            "radius, or raise max_voxels",
-                            map.voxels, params.voxel_size,
-                            format_bytes(4.0 * static_cast<double>(map.voxels)), params.max_voxels));
+    throw Error(
+        ExitCode::Memory,
+        fmt::format("the particles touch more than {} voxels of {:g} m ({} for the density "
+                    "alone), over the limit of {}; raise voxel_size, lower the particles' "
+                    "radius, or raise max_voxels",
+                    map.voxels, params.voxel_size,
+                    format_bytes(4.0 * static_cast<double>(map.voxels)), params.max_voxels));
 }
 
 TileMap fill_tiles(const ParticleSet& particles, const RasterPlan& plan,
@@ -304,8 +311,7 @@ ParticleGrids rasterize_checked(const ParticleSet& particles, const RasterizePar
     });
 
     ParticleGrids grids;
-    grids.density =
-        build_grid<openvdb::FloatGrid>("density", params, map.tiles, &LeafSet::density);
+    grids.density = build_grid<openvdb::FloatGrid>("density", params, map.tiles, &LeafSet::density);
     if (channels.velocity) {
         grids.velocity =
             build_grid<openvdb::Vec3SGrid>("velocity", params, map.tiles, &LeafSet::velocity);
@@ -331,9 +337,8 @@ ParticleGrids rasterize(const ParticleSet& particles, const RasterizeParams& par
                                                   "raise voxel_size or lower their count",
                                                   particles.size()));
     } catch (const openvdb::Exception& e) {
-        throw Error(ExitCode::Input,
-                    fmt::format("cannot make grids with voxel_size {:g} m: {}", params.voxel_size,
-                                printable(e.what())));
+        throw Error(ExitCode::Input, fmt::format("cannot make grids with voxel_size {:g} m: {}",
+                                                 params.voxel_size, printable(e.what())));
     }
 }
 

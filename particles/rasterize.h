@@ -14,19 +14,19 @@ struct RasterChannels {
 };
 
 struct RasterizeParams {
-    float voxel_size = 0.02f;     ///< edge of a voxel [m]
-    float shutter_open_s = 0.0f;  ///< blur along the velocity from here ... [s, relative to frame]
-    float shutter_close_s = 0.0f; ///< ... to here; equal means no blur
+    float voxel_size = 0.02f;      ///< edge of a voxel [m]
+    float shutter_open_s = 0.0f;   ///< blur along the velocity from here ... [s, relative to frame]
+    float shutter_close_s = 0.0f;  ///< ... to here; equal means no blur
     int64_t max_voxels = 2'000'000'000;  ///< refuse larger results, Error(Memory)
     RasterChannels channels;
 };
 
 /// Particle grids of one frame, fog volumes named as in the file formats of other tools.
 struct ParticleGrids {
-    openvdb::FloatGrid::Ptr density;        ///< "density" [kg/m^3]
-    openvdb::Vec3SGrid::Ptr velocity;       ///< "velocity" [m/s], mass-weighted mean; or null
-    openvdb::FloatGrid::Ptr temperature;    ///< "temperature" [K], mass-weighted mean; or null
-    openvdb::Vec3SGrid::Ptr color;          ///< "Cd", mass-weighted mean; or null
+    openvdb::FloatGrid::Ptr density;      ///< "density" [kg/m^3]
+    openvdb::Vec3SGrid::Ptr velocity;     ///< "velocity" [m/s], mass-weighted mean; or null
+    openvdb::FloatGrid::Ptr temperature;  ///< "temperature" [K], mass-weighted mean; or null
+    openvdb::Vec3SGrid::Ptr color;        ///< "Cd", mass-weighted mean; or null
 };
 
 /// Splats particles with a normalised smooth kernel whose support is the particle's radius.

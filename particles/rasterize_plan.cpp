@@ -58,11 +58,11 @@ BlockReport inspect(const ParticleSet& particles, const SplatRules& rules, size_
 {
     const float support = support_of(particles, rules, i);
     if (!(support <= max_support_voxels)) {
-        throw Error(ExitCode::Memory,
-                    fmt::format("particle {}: radius {:g} m is {:g} voxels of {:g} m, more than "
-                                "{:g}; raise voxel_size or lower the radius",
-                                i, particles.radius[i], support, params.voxel_size,
-                                max_support_voxels));
+        throw Error(
+            ExitCode::Memory,
+            fmt::format("particle {}: radius {:g} m is {:g} voxels of {:g} m, more than "
+                        "{:g}; raise voxel_size or lower the radius",
+                        i, particles.radius[i], support, params.voxel_size, max_support_voxels));
     }
     const Vec3 p = particles.position[i];
     throw Error(ExitCode::Input,
@@ -98,16 +98,16 @@ SplatRules make_rules(const ParticleSet& particles, const RasterizeParams& param
 void check(const ParticleSet& particles, const RasterizeParams& params)
 {
     if (!(params.voxel_size > 0.0f) || !std::isfinite(params.voxel_size)) {
-        throw Error(ExitCode::Input, fmt::format("voxel_size is {:g} m; it must be positive",
-                                                 params.voxel_size));
+        throw Error(ExitCode::Input,
+                    fmt::format("voxel_size is {:g} m; it must be positive", params.voxel_size));
     }
     if (!std::isfinite(params.shutter_open_s) || !std::isfinite(params.shutter_close_s)) {
         throw Error(ExitCode::Input, "the shutter's times must be finite");
     }
     const size_t count = particles.size();
     if (count > UINT32_MAX) {
-        throw Error(ExitCode::Memory, fmt::format("{} particles; at most {} can be rasterised",
-                                                  count, UINT32_MAX));
+        throw Error(ExitCode::Memory,
+                    fmt::format("{} particles; at most {} can be rasterised", count, UINT32_MAX));
     }
     require_length("velocity", particles.velocity.size(), count);
     require_length("radius", particles.radius.size(), count);
@@ -139,8 +139,8 @@ RasterPlan make_raster_plan(const ParticleSet& particles, const RasterizeParams&
         const size_t last = std::min(count, first + block_size);
         const double parts = std::clamp(std::ceil(blocks[b].splats / splats_per_chunk), 1.0,
                                         static_cast<double>(last - first));
-        const size_t step = (last - first + static_cast<size_t>(parts) - 1) /
-                            static_cast<size_t>(parts);
+        const size_t step =
+            (last - first + static_cast<size_t>(parts) - 1) / static_cast<size_t>(parts);
         for (size_t i = first; i < last; i += step) {
             plan.chunks.push_back({i, std::min(last, i + step)});
             in_wave += blocks[b].splats / parts;

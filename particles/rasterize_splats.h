@@ -22,8 +22,8 @@ struct SplatRules {
     double inv_voxel_volume;  ///< [1/m^3]
     double open_s;            ///< shutter, seconds relative to the particles' time
     double close_s;
-    float missing_mass;       ///< [kg] where the set has no masses
-    bool use_velocity;        ///< blur or velocity channel
+    float missing_mass;  ///< [kg] where the set has no masses
+    bool use_velocity;   ///< blur or velocity channel
     bool use_temperature;
     bool use_color;
 
@@ -56,8 +56,8 @@ struct Splat {
 {
     if (!rules.blurs() || particles.velocity.empty()) return 1;
     const double speed = glm::length(Vec3d(particles.velocity[i])) * rules.index_from_world;
-    const double steps = std::abs(rules.close_s - rules.open_s) * speed /
-                         (0.5 * static_cast<double>(support));
+    const double steps =
+        std::abs(rules.close_s - rules.open_s) * speed / (0.5 * static_cast<double>(support));
     return steps < max_stamps ? std::max(1, static_cast<int>(std::ceil(steps))) : max_stamps;
 }
 

@@ -32,7 +32,8 @@ void mark_leaves(const TileSplat& splat, LeafMask& mask)
         mark_box(box, mask);
         return;
     }
-    for_each_leaf(splat, box, [&](int k) { mask[static_cast<size_t>(k) / 64] |= 1ull << (k % 64); });
+    for_each_leaf(splat, box,
+                  [&](int k) { mask[static_cast<size_t>(k) / 64] |= 1ull << (k % 64); });
 }
 
 /// Splats of a chunk in particle order, each with its tile's number in the chunk.

@@ -9,8 +9,8 @@
 
 namespace mote {
 
-inline constexpr int leaf_size = 8;     ///< voxels per edge of an OpenVDB leaf
-inline constexpr int tile_size = 64;    ///< voxels per edge of a tile: 8^3 leaves
+inline constexpr int leaf_size = 8;   ///< voxels per edge of an OpenVDB leaf
+inline constexpr int tile_size = 64;  ///< voxels per edge of a tile: 8^3 leaves
 inline constexpr int tile_leaves = 512;
 
 /// Which tile: voxels [64 x, 64 x + 63] and so on.

@@ -30,8 +30,8 @@ float noise(Vec3 p)
         const int x = k & 1;
         const int y = k >> 1 & 1;
         const int z = k >> 2;
-        const float weight = (x ? u.x : 1.0f - u.x) * (y ? u.y : 1.0f - u.y) *
-                             (z ? u.z : 1.0f - u.z);
+        const float weight =
+            (x ? u.x : 1.0f - u.x) * (y ? u.y : 1.0f - u.y) * (z ? u.z : 1.0f - u.z);
         sum += weight * lattice_value(static_cast<int>(cell.x) + x, static_cast<int>(cell.y) + y,
                                       static_cast<int>(cell.z) + z);
     }
