@@ -1,0 +1,178 @@
+#include "volumes/guarded_child.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <new>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fmt/core.h>
+
+#include "core/error.h"
+#include "core/text.h"
+
+namespace mote {
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool limit_address_space = false;  // sanitizers reserve terabytes of it
+#else
+constexpr bool limit_address_space = true;
+#endif
+
+/// Address space of this process now.
+int64_t mapped_bytes()
+{
+    std::FILE* file = std::fopen("/proc/self/statm", "r");
+    if (!file) return 0;
+    long long pages = 0;
+    const bool read = std::fscanf(file, "%lld", &pages) == 1;
+    std::fclose(file);
+    return read ? pages * sysconf(_SC_PAGESIZE) : 0;
+}
+
+void set_limit(decltype(RLIMIT_CPU) resource, int64_t soft, int64_t hard)
+{
+    rlimit limit{};
+    if (getrlimit(resource, &limit) != 0) return;
+    limit.rlim_cur = std::min(limit.rlim_max, static_cast<rlim_t>(soft));
+    limit.rlim_max = std::min(limit.rlim_max, static_cast<rlim_t>(hard));
+    setrlimit(resource, &limit);
+}
+
+/// First byte of the child's report.
+enum Report : char { done = 'd', failed = 'f', out_of_memory = 'm' };
+
+void send(int pipe_end, char kind, const char* text)
+{
+    char buffer[512];
+    buffer[0] = kind;
+    const size_t length = std::min(std::strlen(text), sizeof buffer - 1);
+    std::memcpy(buffer + 1, text, length);
+    // Less than PIPE_BUF: written whole or not at all, and a lost report is read as a crash.
+    [[maybe_unused]] const ssize_t written = write(pipe_end, buffer, length + 1);
+}
+
+[[noreturn]] void be_child(int pipe_end, const ChildLimits& limits, int64_t address_space,
+                           const std::function<void()>& task)
+{
+    for (const int signal : {SIGINT, SIGTERM, SIGXCPU, SIGSEGV, SIGABRT})
+        std::signal(signal, SIG_DFL);
+    set_limit(RLIMIT_CORE, 0, 0);
+    set_limit(RLIMIT_CPU, limits.cpu_seconds, limits.cpu_seconds + 1);
+    if (limit_address_space) set_limit(RLIMIT_AS, address_space, address_space);
+    const int null = open("/dev/null", O_WRONLY);  // readers print warnings: they are reported once
+    if (null >= 0) {
+        dup2(null, STDOUT_FILENO);
+        dup2(null, STDERR_FILENO);
+    }
+    try {
+        task();
+        send(pipe_end, done, "");
+    } catch (const Error& e) {
+        send(pipe_end, e.code() == ExitCode::Memory ? out_of_memory : failed, e.what());
+    } catch (const std::bad_alloc&) {
+        send(pipe_end, out_of_memory, "it asks for more memory than a file of its size can need");
+    } catch (const std::exception& e) {
+        send(pipe_end, failed, e.what());
+    } catch (...) {
+        send(pipe_end, failed, "unknown failure");
+    }
+    _exit(0);
+}
+
+struct Outcome {
+    std::string report;  ///< empty: the child died without one
+    int status = 0;
+    bool timed_out = false;
+    double cpu_seconds = 0.0;
+};
+
+Outcome wait_for(pid_t child, int pipe_end, int wall_seconds)
+{
+    using Clock = std::chrono::steady_clock;
+    const auto deadline = Clock::now() + std::chrono::seconds(wall_seconds);
+    Outcome out;
+    for (;;) {
+        const auto left =
+            std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+        pollfd waiting{pipe_end, POLLIN, 0};
+        const int ready = left > 0 ? poll(&waiting, 1, static_cast<int>(left)) : 0;
+        if (ready < 0 && errno == EINTR) continue;
+        if (ready <= 0) {
+            out.timed_out = true;
+            kill(child, SIGKILL);
+            break;
+        }
+        char buffer[512];
+        const ssize_t count = read(pipe_end, buffer, sizeof buffer);
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) break;  // end of file: the child is gone
+        out.report.append(buffer, static_cast<size_t>(count));
+    }
+    rusage usage{};
+    while (wait4(child, &out.status, 0, &usage) < 0 && errno == EINTR) {
+    }
+    out.cpu_seconds = static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+                      1e-6 * static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
+    return out;
+}
+
+Outcome run_once(const std::string& what, const ChildLimits& limits,
+                 const std::function<void()>& task)
+{
+    int ends[2];
+    if (pipe2(ends, O_CLOEXEC) != 0) {
+        throw Error(ExitCode::RenderFailed,
+                    fmt::format("{}: cannot create a pipe: {}", what, std::strerror(errno)));
+    }
+    const int64_t address_space = mapped_bytes() + limits.memory_bytes;
+    const pid_t child = fork();
+    if (child == 0) {
+        close(ends[0]);
+        be_child(ends[1], limits, address_space, task);
+    }
+    const int fork_error = errno;
+    close(ends[1]);
+    if (child < 0) {
+        close(ends[0]);
+        throw Error(ExitCode::Memory, fmt::format("{}: cannot start the process that checks it: {}",
+                                                  what, std::strerror(fork_error)));
+    }
+    Outcome out = wait_for(child, ends[0], limits.wall_seconds);
+    close(ends[0]);
+    return out;
+}
+
+}  // namespace
+
+void run_in_child(const std::string& what, const ChildLimits& limits,
+                  const std::function<void()>& task)
+{
+    Outcome out = run_once(what, limits, task);
+    const bool slept = out.timed_out && out.cpu_seconds < 0.5 * limits.cpu_seconds;
+    if (slept) out = run_once(what, limits, task);
+    if (!out.report.empty()) {
+        if (out.report[0] == done) return;
+        const ExitCode code = out.report[0] == out_of_memory ? ExitCode::Memory : ExitCode::Input;
+        throw Error(code, fmt::format("{}: {}", what, printable(out.report.substr(1))));
+    }
+    std::string reason = "reading it crashed the checking process";
+    if (out.timed_out) {
+        reason = fmt::format("reading it took longer than {} s", limits.wall_seconds);
+    } else if (WIFSIGNALED(out.status) &&
+               (WTERMSIG(out.status) == SIGXCPU || WTERMSIG(out.status) == SIGKILL)) {
+        reason = fmt::format("reading it took more than {} s of CPU time", limits.cpu_seconds);
+    }
+    throw Error(ExitCode::Input, fmt::format("{}: {}; the file is damaged", what, reason));
+}
+
+}  // namespace mote
