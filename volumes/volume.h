@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,22 @@ struct Emission {
     [[nodiscard]] bool is_on() const { return emission_scale > 0.0f || blackbody_scale > 0.0f; }
 };
 
+/// World space to the local coordinates of one grid (index minus its `lo`). In double: floats
+/// would lose whole voxels where a grid or a camera is far from the world's origin.
+struct GridFrame {
+    glm::dmat3 linear{1.0};
+    Vec3d offset{0.0};
+
+    [[nodiscard]] Vec3d point(Vec3 p) const { return linear * Vec3d(p) + offset; }
+    [[nodiscard]] Vec3d vector(Vec3 v) const { return linear * Vec3d(v); }
+};
+
+/// A volume's transforms at one instant.
+struct VolumeFrames {
+    GridFrame density;
+    GridFrame emission;  ///< of the emission grid, if there is one
+};
+
 /// One participating medium, ready to render. sigma_t(x) = density_scale * density(x), where
 /// density is the trilinear reconstruction of the grid. Grids are shared between frames that do
 /// not change them. All grids share `object_from_world`'s object space; each has its own
@@ -41,6 +58,26 @@ struct Volume {
     Phase phase;
     Emission emission_params;
     MovingTransform world_from_object;
+
+    /// Filled by finalize(): saves every ray and lookup from inverting matrices.
+    std::optional<Affine> object_from_local;  ///< local coordinates of `density` -> object space
+    std::optional<VolumeFrames> at_rest;      ///< stays empty if the volume moves
 };
+
+/// Caches the transforms. Call it once all fields are set, and again after changing density,
+/// emission or world_from_object. Without it everything works, slower.
+void finalize(Volume& volume);
+
+/// Transforms at ray time [0,1]; a copy of the cache for volumes at rest.
+[[nodiscard]] VolumeFrames frames_at(const Volume& volume, float time);
+
+/// Local coordinates of the density grid -> object space.
+[[nodiscard]] Affine object_from_local(const Volume& volume);
+
+/// Where a ray meets a volume's density at its time; empty if it misses.
+[[nodiscard]] Interval volume_interval(const Volume& volume, const Ray& ray, Interval range);
+
+/// World-space bounds of density and emission over the whole shutter; empty for an empty volume.
+[[nodiscard]] Bounds3 world_bounds(const Volume& volume);
 
 }  // namespace mote

@@ -1,0 +1,159 @@
+#include "volumes/tracking.h"
+
+#include "volumes/cell_walk.h"
+#include "volumes/collisions.h"
+
+namespace mote {
+namespace {
+
+/// Beyond this optical depth a float's exp(-tau) is 0.
+constexpr float opaque = 104.0f;
+
+bool is_void(const Volume& volume)
+{
+    return !volume.density || volume.density->index_bounds.is_empty() ||
+           !(volume.density_scale > 0.0f);
+}
+
+LocalRay density_ray(const Volume& volume, const Ray& ray, Interval range)
+{
+    if (volume.at_rest) return make_local_ray(*volume.density, volume.at_rest->density, ray, range);
+    return make_local_ray(*volume.density, frames_at(volume, ray.time).density, ray, range);
+}
+
+Collision collision_at(const Volume& volume, const LocalRay& local, float s)
+{
+    return {local.world_t(s), -1, object_from_local(volume).point(local.at(s))};
+}
+
+/// Optical depth, given up beyond `limit`.
+float optical_depth_up_to(const Volume& volume, const Ray& ray, Interval range, double limit)
+{
+    if (is_void(volume)) return 0.0f;
+    const LocalRay local = density_ray(volume, ray, range);
+    double sum = 0.0;
+    const double stop = limit / static_cast<double>(volume.density_scale);
+    for_each_brick(*volume.density, local, [&](const BrickSpan& span) {
+        sum += static_cast<double>(integrate_brick(*volume.density, local, span));
+        return sum < stop;
+    });
+    return static_cast<float>(sum * static_cast<double>(volume.density_scale));
+}
+
+/// Root of the cell's monotone integral: where it reaches `goal`. Newton, kept inside a bracket.
+float invert_cell(const BrickGrid& grid, const LocalRay& ray, const BrickSpan& span,
+                  const CellSpan& cell, float goal)
+{
+    float lo = cell.s0;
+    float hi = cell.s1;
+    const float whole = cell.integral();
+    float s = cell.s0 + (cell.s1 - cell.s0) * std::clamp(goal / whole, 0.0f, 1.0f);
+    for (int i = 0; i < 20; ++i) {
+        CellSpan part{cell.s0, s, cell.v0, 0.0f, 0.0f};
+        part.vm = sample_in_brick(grid, span, ray.at(0.5f * (cell.s0 + s)));
+        part.v1 = sample_in_brick(grid, span, ray.at(s));
+        const float excess = part.integral() - goal;
+        if (std::abs(excess) <= 2e-7f * whole) break;
+        (excess > 0.0f ? hi : lo) = s;
+        const float newton = s - excess / part.v1;
+        s = newton > lo && newton < hi ? newton : 0.5f * (lo + hi);
+    }
+    return s;
+}
+
+}  // namespace
+
+std::optional<Collision> sample_free_flight(const Media& media, const Ray& ray, Interval range,
+                                            Rng& rng)
+{
+    std::optional<Collision> nearest;
+    for (size_t i = 0; i < media.volumes.size(); ++i) {
+        const Volume& volume = media.volumes[i];
+        if (is_void(volume)) continue;
+        const LocalRay local = density_ray(volume, ray, range);
+        if (local.misses()) continue;
+        const float s = track_delta(*volume.density, local, volume.density_scale, rng);
+        if (s < 0.0f) continue;
+        nearest = collision_at(volume, local, s);
+        nearest->volume = static_cast<int>(i);
+        range.t1 = nearest->t;  // only a nearer collision of another volume counts
+    }
+    return nearest;
+}
+
+std::optional<Collision> invert_optical_depth(const Volume& volume, const Ray& ray, Interval range,
+                                              float tau)
+{
+    if (is_void(volume)) return std::nullopt;
+    const BrickGrid& grid = *volume.density;
+    const LocalRay local = density_ray(volume, ray, range);
+    double left = static_cast<double>(tau) / static_cast<double>(volume.density_scale);
+    std::optional<Collision> found;
+    for_each_brick(grid, local, [&](const BrickSpan& span) {
+        return for_each_cell(grid, local, span, [&](const CellSpan& cell) {
+            const double integral = static_cast<double>(cell.integral());
+            if (left >= integral) {
+                left -= integral;
+                return true;
+            }
+            const float s = invert_cell(grid, local, span, cell, static_cast<float>(left));
+            found = collision_at(volume, local, s);
+            return false;
+        });
+    });
+    return found;
+}
+
+float estimate_transmittance(const Media& media, const Ray& ray, Interval range,
+                             TransmittanceKind kind, Rng& rng)
+{
+    float T = 1.0f;
+    for (const Volume& volume : media.volumes) {
+        if (is_void(volume)) continue;
+        if (kind == TransmittanceKind::Exact) {
+            T *= std::exp(-optical_depth_up_to(volume, ray, range, static_cast<double>(opaque)));
+        } else {
+            const LocalRay local = density_ray(volume, ray, range);
+            if (local.misses()) continue;
+            const float scale = volume.density_scale;
+            T *= kind == TransmittanceKind::Ratio
+                     ? track_ratio(*volume.density, local, scale, rng)
+                     : track_residual_ratio(*volume.density, local, scale, rng);
+        }
+        if (T == 0.0f) break;
+    }
+    return T;
+}
+
+float optical_depth(const Volume& volume, const Ray& ray, Interval range)
+{
+    return optical_depth_up_to(volume, ray, range, std::numeric_limits<double>::infinity());
+}
+
+float optical_depth(const Media& media, const Ray& ray, Interval range)
+{
+    float sum = 0.0f;
+    for (const Volume& volume : media.volumes) sum += optical_depth(volume, ray, range);
+    return sum;
+}
+
+Spectrum albedo_at(const Volume& volume, Vec3 p_object)
+{
+    if (!volume.color) return volume.albedo;
+    const Spectrum color = volume.albedo * sample_color(*volume.color, p_object);
+    return glm::clamp(color, Spectrum(0.0f), Spectrum(1.0f));
+}
+
+float sigma_t_at(const Volume& volume, Vec3 p_object)
+{
+    if (is_void(volume)) return 0.0f;
+    const BrickGrid& grid = *volume.density;
+    return volume.density_scale * sample_trilinear(grid, grid.index_from_object.point(p_object));
+}
+
+Vec3 velocity_at(const Volume& volume, Vec3 p_object)
+{
+    return volume.velocity ? sample_color(*volume.velocity, p_object) : Vec3(0.0f);
+}
+
+}  // namespace mote
