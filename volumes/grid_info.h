@@ -24,7 +24,7 @@ struct GridInfo {
 
 /// The grids of a .vdb file. Throws Error(Input) naming the file if it is missing, damaged or no
 /// .vdb file, Error(Memory) if it is over the budget. Cost: a file header, read in a child process
-/// first (see guarded_child.h).
+/// first (see core/guarded_child.h).
 [[nodiscard]] std::vector<GridInfo> list_grids(const std::string& path,
                                                const GridBudget& budget = {});
 

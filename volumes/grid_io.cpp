@@ -9,8 +9,8 @@
 #include <openvdb/io/File.h>
 
 #include "core/error.h"
+#include "core/guarded_child.h"
 #include "core/text.h"
-#include "volumes/guarded_child.h"
 #include "volumes/make_bricks.h"
 
 namespace mote {

@@ -1,4 +1,4 @@
-#include "volumes/guarded_child.h"
+#include "core/guarded_child.h"
 
 #include <algorithm>
 #include <cerrno>
