@@ -61,6 +61,13 @@ void run_with_threads(int count, const std::function<void()>& f)
     arena.execute([&] { f(); });
 }
 
+int thread_limit()
+{
+    const size_t active =
+        tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    return std::min(available_threads(), static_cast<int>(std::min<size_t>(active, 1024)));
+}
+
 struct ThreadLimit::Impl {
     explicit Impl(size_t count) : control(tbb::global_control::max_allowed_parallelism, count) {}
     tbb::global_control control;

@@ -26,6 +26,9 @@ void for_each_tile(int width, int height, const std::function<void(const Tile&)>
 /// machine has cores included. What `--threads` means.
 void run_with_threads(int count, const std::function<void()>& f);
 
+/// Threads worth starting now beside TBB's: what is available, or a lower limit in force.
+[[nodiscard]] int thread_limit();
+
 /// Limits TBB to `count` threads while it lives (count >= 1). Cannot raise their number above the
 /// core count: run_with_threads does.
 class ThreadLimit {

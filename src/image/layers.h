@@ -18,7 +18,10 @@ struct Channel {
     Buffer2D<float> data;
 };
 
-/// Metadata entry of an image file: text, number, vector of numbers (16: a matrix), rational.
+/// Metadata entry of an image file: text, number, vector of numbers, rational. Vectors of 2 and 3
+/// numbers become V2f and V3f in OpenEXR, 16 numbers a matrix (for row vectors times matrix, which
+/// is the memory order of a column-major matrix for column vectors), 8 numbers named
+/// "chromaticities" the standard attribute; others a float vector.
 struct Attribute {
     struct Rational {
         int numerator;
@@ -39,6 +42,13 @@ struct LayeredImage {
     {
         for (const Channel& c : channels) {
             if (c.name == name) return &c;
+        }
+        return nullptr;
+    }
+    [[nodiscard]] const Attribute* find_attribute(const std::string& name) const
+    {
+        for (const Attribute& a : attributes) {
+            if (a.name == name) return &a;
         }
         return nullptr;
     }

@@ -1,0 +1,136 @@
+#include "image/read_image.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string_view>
+#include <system_error>
+
+#include <dlfcn.h>
+
+#include <fmt/core.h>
+
+#include "core/error.h"
+#include "core/text.h"
+#include "image/color.h"
+#include "image/exr_check.h"
+#include "image/oiio_plugin.h"
+
+namespace mote {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// An image format that may be read. To add one, think of who feeds its parser.
+struct Format {
+    std::string_view extension;
+    std::string_view magic;  ///< first bytes of every such file
+    const char* reader;      ///< OpenImageIO's name
+    const char* shown_name;
+};
+
+constexpr std::array<Format, 3> formats{{
+    {".exr", "\x76\x2f\x31\x01", "openexr", "OpenEXR"},
+    {".hdr", "#?", "hdr", "Radiance HDR"},
+    {".png", "\x89PNG\r\n\x1a\n", "png", "PNG"},
+}};
+
+[[noreturn]] void fail(const std::string& path, const std::string& reason)
+{
+    throw Error(ExitCode::Input,
+                fmt::format("cannot read \"{}\": {}", printable(path, 1000), reason));
+}
+
+const Format& format_of(const std::string& path)
+{
+    std::string extension = fs::path(path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    for (const Format& format : formats) {
+        if (format.extension == extension) return format;
+    }
+    fail(path, "only .exr, .hdr and .png images are read; convert it to one of them");
+}
+
+void check_content(const std::string& path, const Format& format)
+{
+    std::error_code error;
+    if (fs::is_directory(path, error)) fail(path, "it is a folder, not an image");
+    std::ifstream file(path, std::ios::binary);
+    if (!file) fail(path, std::generic_category().message(errno));
+    std::array<char, 8> start{};
+    file.read(start.data(), start.size());
+    const std::string_view read(start.data(), static_cast<size_t>(file.gcount()));
+    if (!read.starts_with(format.magic)) {
+        fail(path, fmt::format("it is not a {} file, in spite of its name; check how it was made",
+                               format.shown_name));
+    }
+    if (format.extension == ".exr") check_exr(path);
+}
+
+/// Folders that may hold the module: the executable's, and the build tree's.
+std::array<fs::path, 2> plugin_folders()
+{
+    std::error_code error;
+    return {fs::read_symlink("/proc/self/exe", error).parent_path(),
+            fs::path(MOTE_PLUGIN_BUILD_FOLDER)};
+}
+
+ReadWithOiio load_plugin()
+{
+    std::string reason;
+    for (const fs::path& folder : plugin_folders()) {
+        const fs::path file = folder / oiio_plugin_file;
+        std::error_code error;
+        if (!fs::exists(file, error)) continue;
+        void* module = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+        void* symbol = module ? ::dlsym(module, oiio_plugin_symbol) : nullptr;
+        if (symbol) return reinterpret_cast<ReadWithOiio>(symbol);
+        const char* message = ::dlerror();
+        reason = printable(message ? message : "unknown reason");
+        break;
+    }
+    if (reason.empty()) reason = fmt::format("{} is not beside the executable", oiio_plugin_file);
+    throw Error(ExitCode::Input, fmt::format("images cannot be read: {}; install mote with its "
+                                             "image reader module and libopenimageio2.4",
+                                             reason));
+}
+
+void sanitize(Buffer2D<Spectrum>& image, ImageReadReport& report)
+{
+    for (Spectrum& s : image) {
+        for (int c = 0; c < 3; ++c) {
+            if (s[c] >= 0.0f && std::isfinite(s[c])) continue;
+            ++(std::isfinite(s[c]) ? report.negative : report.non_finite);
+            s[c] = 0.0f;
+        }
+    }
+}
+
+}  // namespace
+
+Buffer2D<Spectrum> read_image(const std::string& path, ImageReadReport* report)
+{
+    const Format& format = format_of(path);
+    check_content(path, format);
+    static const ReadWithOiio read_with_oiio = load_plugin();
+    Buffer2D<Spectrum> image;
+    std::string error;
+    if (!read_with_oiio(path.c_str(), format.reader, image, error)) {
+        fail(path, fmt::format("the {} file is damaged or not supported ({})", format.shown_name,
+                               printable(error)));
+    }
+    if (format.extension == ".png") {
+        for (Spectrum& s : image) s = {decode_srgb(s.x), decode_srgb(s.y), decode_srgb(s.z)};
+    }
+    ImageReadReport counts;
+    sanitize(image, counts);
+    if (report) *report = counts;
+    return image;
+}
+
+}  // namespace mote
