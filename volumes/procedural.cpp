@@ -7,6 +7,8 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "volumes/make_bricks.h"
+#include "volumes/procedural_bricks.h"
 #include "volumes/procedural_density.h"
 
 namespace mote {
@@ -88,6 +90,13 @@ openvdb::FloatGrid::Ptr make_procedural(const ProceduralParams& params, double t
     grid->setName("density");
     grid->setGridClass(openvdb::GRID_FOG_VOLUME);
     return grid;
+}
+
+std::shared_ptr<const BrickGrid> make_procedural_bricks(const ProceduralParams& params,
+                                                        double time_s, const GridBudget& budget)
+{
+    GridLoadReport report;
+    return make_bricks(*make_procedural(params, time_s, budget), budget, report);
 }
 
 }  // namespace mote

@@ -1,0 +1,226 @@
+// What a density lookup, a cell of the exact walk and a ray of each tracker cost, on a plume of
+// 128 x 256 x 128 voxels whose optical depth through the middle is 8. Times are per item (lookup,
+// cell or ray that hits the plume's box), on one thread.
+#include <benchmark/benchmark.h>
+
+#include "core/sampling.h"
+#include "volumes/cell_walk.h"
+#include "volumes/procedural_bricks.h"
+#include "volumes/tracking.h"
+
+namespace mote {
+namespace {
+
+constexpr Interval everything{0.0f, infinity};
+
+/// The plume, scaled so that rays across its middle have optical depth 8 on average.
+const Media& plume()
+{
+    static const Media media = [] {
+        ProceduralParams params;
+        params.kind = ProceduralKind::Plume;
+        params.size = {1.0f, 2.0f, 1.0f};
+        params.voxel_size = 1.0f / 128.0f;
+        Volume volume;
+        volume.density = make_procedural_bricks(params, 0.0);
+        finalize(volume);
+        double sum = 0.0;
+        for (int i = 0; i < 64; ++i) {
+            const float offset = 0.2f * (static_cast<float>(i) / 63.0f - 0.5f);
+            const Ray ray{{offset, offset, -5.0f}, {0.0f, 0.0f, 1.0f}};
+            sum += static_cast<double>(optical_depth(volume, ray, everything)) / 64.0;
+        }
+        volume.density_scale = static_cast<float>(8.0 / sum);
+        return Media{{volume}};
+    }();
+    return media;
+}
+
+/// Camera rays of a 480 x 270 image that hit the plume's bounds, in scanline order.
+const std::vector<Ray>& camera_rays()
+{
+    static const std::vector<Ray> rays = [] {
+        std::vector<Ray> out;
+        const Vec3 eye(0.0f, 0.0f, -3.6f);
+        for (int y = 0; y < 270; ++y) {
+            for (int x = 0; x < 480; ++x) {
+                const Vec3 d = glm::normalize(
+                    Vec3(static_cast<float>(x - 240), static_cast<float>(y - 135), 440.0f));
+                const Ray ray{eye, d};
+                if (!volume_interval(plume().volumes[0], ray, everything).is_empty()) {
+                    out.push_back(ray);
+                }
+            }
+        }
+        return out;
+    }();
+    return rays;
+}
+
+/// Rays towards the sun from collisions of the camera rays.
+const std::vector<Ray>& shadow_rays()
+{
+    static const std::vector<Ray> rays = [] {
+        std::vector<Ray> out;
+        const Vec3 sun = glm::normalize(Vec3(1.0f, 1.0f, -0.5f));
+        uint32_t i = 0;
+        for (const Ray& ray : camera_rays()) {
+            Rng rng(1, 0, Stream::Test, i++, 0);
+            const auto hit = sample_free_flight(plume(), ray, everything, rng);
+            if (hit) out.push_back({ray.at(hit->t), sun});
+        }
+        return out;
+    }();
+    return rays;
+}
+
+/// Runs f(ray, rng) over the rays; reports time per ray.
+template <class F>
+void over_rays(benchmark::State& state, const std::vector<Ray>& rays, F&& f)
+{
+    uint32_t pass = 0;
+    for (auto _ : state) {
+        float sum = 0.0f;
+        for (size_t i = 0; i < rays.size(); ++i) {
+            Rng rng(1, pass, Stream::Test, static_cast<uint32_t>(i), 0);
+            sum += f(rays[i], rng);
+        }
+        benchmark::DoNotOptimize(sum);
+        ++pass;
+    }
+    state.SetItemsProcessed(state.iterations() * static_cast<int64_t>(rays.size()));
+    state.counters["per_item"] = benchmark::Counter(
+        static_cast<double>(rays.size()),
+        benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+
+void delta_camera(benchmark::State& state)
+{
+    over_rays(state, camera_rays(), [](const Ray& ray, Rng& rng) {
+        const auto hit = sample_free_flight(plume(), ray, everything, rng);
+        return hit ? hit->t : 0.0f;
+    });
+}
+BENCHMARK(delta_camera)->Unit(benchmark::kMillisecond);
+
+void walk_camera(benchmark::State& state)
+{
+    const Volume& volume = plume().volumes[0];
+    const BrickGrid& grid = *volume.density;
+    over_rays(state, camera_rays(), [&](const Ray& ray, Rng&) {
+        float sum = 0.0f;
+        for_each_brick(grid, make_local_ray(grid, volume.at_rest->density, ray, everything),
+                       [&](const BrickSpan& span) {
+                           sum += span.s1 - span.s0;
+                           return true;
+                       });
+        return sum;
+    });
+}
+BENCHMARK(walk_camera)->Unit(benchmark::kMillisecond);
+
+void transmittance_shadow(benchmark::State& state)
+{
+    const auto kind = static_cast<TransmittanceKind>(state.range(0));
+    over_rays(state, shadow_rays(), [&](const Ray& ray, Rng& rng) {
+        return estimate_transmittance(plume(), ray, everything, kind, rng);
+    });
+}
+BENCHMARK(transmittance_shadow)
+    ->Unit(benchmark::kMillisecond)
+    ->ArgName("kind(ratio,residual,exact)")
+    ->DenseRange(0, 2);
+
+void transmittance_camera(benchmark::State& state)
+{
+    const auto kind = static_cast<TransmittanceKind>(state.range(0));
+    over_rays(state, camera_rays(), [&](const Ray& ray, Rng& rng) {
+        return estimate_transmittance(plume(), ray, everything, kind, rng);
+    });
+}
+BENCHMARK(transmittance_camera)
+    ->Unit(benchmark::kMillisecond)
+    ->ArgName("kind(ratio,residual,exact)")
+    ->DenseRange(0, 2);
+
+void inversion_camera(benchmark::State& state)
+{
+    over_rays(state, camera_rays(), [](const Ray& ray, Rng& rng) {
+        const float tau = sample_exponential(rng.uniform());
+        const auto hit = invert_optical_depth(plume().volumes[0], ray, everything, tau);
+        return hit ? hit->t : 0.0f;
+    });
+}
+BENCHMARK(inversion_camera)->Unit(benchmark::kMillisecond);
+
+/// Cells of the exact walk; the brick walk around them is part of the time.
+void exact_cells(benchmark::State& state)
+{
+    const Volume& volume = plume().volumes[0];
+    const BrickGrid& grid = *volume.density;
+    int64_t cells = 0;
+    for (auto _ : state) {
+        float sum = 0.0f;
+        for (const Ray& ray : camera_rays()) {
+            const LocalRay local = make_local_ray(grid, volume.at_rest->density, ray, everything);
+            for_each_brick(grid, local, [&](const BrickSpan& span) {
+                return for_each_cell(grid, local, span, [&](const CellSpan& cell) {
+                    sum += cell.integral();
+                    ++cells;
+                    return true;
+                });
+            });
+        }
+        benchmark::DoNotOptimize(sum);
+    }
+    state.counters["per_item"] = benchmark::Counter(
+        static_cast<double>(cells), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+    state.counters["cells/ray"] = static_cast<double>(cells) /
+                                  static_cast<double>(state.iterations()) /
+                                  static_cast<double>(camera_rays().size());
+}
+BENCHMARK(exact_cells)->Unit(benchmark::kMillisecond);
+
+/// Lookups one voxel apart along rays, and at random points.
+void lookups(benchmark::State& state)
+{
+    const BrickGrid& grid = *plume().volumes[0].density;
+    const bool is_random = state.range(0) != 0;
+    const Vec3 extent(grid.brick_count * BrickGrid::brick_size);
+    std::vector<Vec3> points(1 << 18);
+    Rng rng(5, 0, Stream::Test, 0, 0);
+    for (size_t i = 0; i < points.size(); ++i) {
+        const bool fresh = is_random || i % 64 == 0;
+        points[i] = fresh ? rng.uniform3() * extent : points[i - 1] + Vec3(0.55f, 0.6f, 0.58f);
+    }
+    for (auto _ : state) {
+        float sum = 0.0f;
+        for (const Vec3& p : points) sum += sample_local(grid, p);
+        benchmark::DoNotOptimize(sum);
+    }
+    state.counters["per_item"] = benchmark::Counter(
+        static_cast<double>(points.size()),
+        benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(lookups)->Unit(benchmark::kMillisecond)->ArgName("random")->DenseRange(0, 1);
+
+void build_plume_bricks(benchmark::State& state)
+{
+    ProceduralParams params;
+    params.kind = ProceduralKind::Box;
+    params.size = {1.0f, 1.0f, 1.0f};
+    params.voxel_size = 1.0f / 128.0f;
+    for (auto _ : state) benchmark::DoNotOptimize(make_procedural_bricks(params, 0.0));
+    const BrickGrid& grid = *plume().volumes[0].density;
+    state.counters["plume_bricks"] = static_cast<double>(grid.active_bricks());
+    state.counters["plume_filled"] =
+        static_cast<double>(grid.active_bricks()) / static_cast<double>(grid.table.size());
+    state.counters["camera_rays"] = static_cast<double>(camera_rays().size());
+    state.counters["shadow_rays"] = static_cast<double>(shadow_rays().size());
+}
+BENCHMARK(build_plume_bricks)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace mote
+
+BENCHMARK_MAIN();
