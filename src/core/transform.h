@@ -27,16 +27,20 @@ struct MovingTransform {
     [[nodiscard]] Trs at(float time) const;
 };
 
-/// Keyframed Trs of a scene description: frames ascending, linear between, held outside.
+/// Keyframe of an object's transform. Between keys every number runs linearly, the angles too, so
+/// that 0 to 360 degrees is a full turn; before the first and after the last key it stands still.
 struct TransformKey {
     double frame = 0.0;
-    Trs trs;
+    Vec3d translate{0.0};  ///< [m]
+    Vec3d rotate{0.0};     ///< angles about x, then y, then z [degrees]
+    Vec3d scale{1.0};
 };
 
-/// Value of the key list at a (fractional) frame; empty list: identity.
+/// Value of the key list, frames ascending, at a (fractional) frame; empty list: identity.
 [[nodiscard]] Trs evaluate(const std::vector<TransformKey>& keys, double frame);
 
-/// Transform over [open, close] in frames; sampled finely enough to catch keys in between.
+/// Transform over [open, close] in frames; sampled finely enough to catch keys and turns in
+/// between.
 [[nodiscard]] MovingTransform over_shutter(const std::vector<TransformKey>& keys, double open,
                                            double close);
 

@@ -26,15 +26,15 @@ struct CameraKey {
 };
 
 struct CameraDescription {
-    Vec3d position{0.0, 0.0, 5.0};   ///< [m]
-    Vec3d look_at{0.0};              ///< [m]
+    Vec3d position{0.0, 0.0, 5.0};  ///< [m]
+    Vec3d look_at{0.0};             ///< [m]
     Vec3d up{0.0, 1.0, 0.0};
-    double fov = 45.0;               ///< vertical field of view [degrees], (0, 180)
-    double lens_radius = 0.0;        ///< [m]; 0: everything is sharp
-    double focus_distance = 0.0;     ///< [m]; 0: distance to look_at
-    double shutter_open = 0.0;       ///< [frames], relative to the frame
-    double shutter_close = 0.0;      ///< [frames]; equal to open: no motion blur
-    std::vector<CameraKey> keys;     ///< override the fields above, linear between
+    double fov = 45.0;            ///< vertical field of view [degrees], (0, 180)
+    double lens_radius = 0.0;     ///< [m]; 0: everything is sharp
+    double focus_distance = 0.0;  ///< [m]; 0: distance to look_at
+    double shutter_open = 0.0;    ///< [frames], relative to the frame
+    double shutter_close = 0.0;   ///< [frames]; equal to open: no motion blur
+    std::vector<CameraKey> keys;  ///< override the fields above, linear between
 };
 
 enum class EstimatorKind { Path };
@@ -42,16 +42,16 @@ enum class EstimatorKind { Path };
 struct RenderDescription {
     int width = 640;
     int height = 360;
-    int samples = 16;                ///< per pixel
+    int samples = 16;  ///< per pixel
     uint32_t seed = 0;
     EstimatorKind estimator = EstimatorKind::Path;
-    PathTracerParams path;           ///< bounces, roulette, transmittance, light choice
+    PathTracerParams path;  ///< bounces, roulette, transmittance, light choice
 };
 
 struct OutputDescription {
-    std::string path = "out/####.exr";     ///< EXR pattern, relative to the working folder
-    std::string preview;                   ///< PNG pattern; empty: none
-    std::vector<std::string> aovs;         ///< layers beside RGBA
+    std::string path = "out/####.exr";  ///< EXR pattern, relative to the working folder
+    std::string preview;                ///< PNG pattern; empty: none
+    std::vector<std::string> aovs;      ///< layers beside RGBA
     PixelType color_type = PixelType::Half;
     ExrCompression compression = ExrCompression::Zip;
     PreviewParams view;
@@ -60,26 +60,26 @@ struct OutputDescription {
 /// A volume takes its density from exactly one of: a grid file, a particle system, a procedural.
 struct VolumeDescription {
     std::string name;
-    std::optional<SequenceParams> file;             ///< .vdb fog volumes
-    std::string particles;                          ///< name of a [[particles]] entry
+    std::optional<SequenceParams> file;  ///< .vdb fog volumes
+    std::string particles;               ///< name of a [[particles]] entry
     std::optional<ProceduralParams> procedural;
     std::string density_grid = "density";
-    std::string temperature_grid = "temperature";   ///< read only if something emits
-    std::string emission_grid = "emission";         ///< read only if emission_scale > 0
-    std::string color_grid = "Cd";                  ///< read only if use_color
-    std::string velocity_grid = "velocity";         ///< read only if something needs motion
-    float density_scale = 1.0f;                     ///< sigma_t per density unit [1/m]
+    std::string temperature_grid = "temperature";  ///< read only if something emits
+    std::string emission_grid = "emission";        ///< read only if emission_scale > 0
+    std::string color_grid = "Cd";                 ///< read only if use_color
+    std::string velocity_grid = "velocity";        ///< read only if something needs motion
+    float density_scale = 1.0f;                    ///< sigma_t per density unit [1/m]
     Spectrum albedo{0.9f};
-    bool use_color = false;                         ///< multiply albedo by the colour grid
+    bool use_color = false;  ///< multiply albedo by the colour grid
     Phase phase;
     Emission emission;
-    std::vector<TransformKey> transform;            ///< world from object
+    std::vector<TransformKey> transform;  ///< world from object
 };
 
 struct ParticlesDescription {
     std::string name;
     SourceParams source;
-    float voxel_size = 0.02f;                       ///< of the rasterised grids [m]
+    float voxel_size = 0.02f;  ///< of the rasterised grids [m]
 };
 
 enum class LightKind { Point, Distant, Sphere, Quad, Environment };
@@ -88,17 +88,17 @@ enum class LightKind { Point, Distant, Sphere, Quad, Environment };
 struct LightDescription {
     std::string name;
     LightKind kind = LightKind::Point;
-    Vec3 position{0.0f};          ///< point, sphere: centre; quad: corner [m]
+    Vec3 position{0.0f};               ///< point, sphere: centre; quad: corner [m]
     Vec3 direction{0.0f, 1.0f, 0.0f};  ///< distant: towards the light
     Vec3 edge_u{1.0f, 0.0f, 0.0f}, edge_v{0.0f, 0.0f, 1.0f};  ///< quad [m]
-    float radius = 0.1f;          ///< sphere [m]
-    Spectrum color{1.0f};         ///< multiplies strength
-    float strength = 1.0f;        ///< point: [W/sr]; distant: [W/m^2]; others: [W/(m^2 sr)]
-    bool two_sided = false;       ///< quad
-    std::string image;            ///< environment: .exr, .hdr or .png file
-    int count = 1;                ///< point, sphere: this many copies scattered over `spread`
-    Vec3 spread{0.0f};            ///< edges of the box around `position` for the copies [m]
-    uint32_t seed = 1;            ///< of the scattering
+    float radius = 0.1f;                                      ///< sphere [m]
+    Spectrum color{1.0f};                                     ///< multiplies strength
+    float strength = 1.0f;   ///< point: [W/sr]; distant: [W/m^2]; others: [W/(m^2 sr)]
+    bool two_sided = false;  ///< quad
+    std::string image;       ///< environment: .exr, .hdr or .png file
+    int count = 1;           ///< point, sphere: this many copies scattered over `spread`
+    Vec3 spread{0.0f};       ///< edges of the box around `position` for the copies [m]
+    uint32_t seed = 1;       ///< of the scattering
     std::vector<TransformKey> transform;
 };
 
@@ -110,11 +110,11 @@ struct MeshDescription {
 };
 
 struct SceneDescription {
-    std::string path;          ///< of the scene file, for messages
-    std::string base_dir;      ///< resolves relative input paths
+    std::string path;      ///< of the scene file, for messages
+    std::string base_dir;  ///< resolves relative input paths
     std::string name;
-    double fps = 24.0;         ///< frames per second
-    int first_frame = 1;       ///< default range of `mote render`
+    double fps = 24.0;    ///< frames per second
+    int first_frame = 1;  ///< default range of `mote render`
     int last_frame = 1;
     CameraDescription camera;
     RenderDescription render;
@@ -123,7 +123,7 @@ struct SceneDescription {
     std::vector<ParticlesDescription> particles;
     std::vector<LightDescription> lights;
     std::vector<MeshDescription> meshes;
-    uint64_t hash = 0;         ///< of the resolved description, order of keys irrelevant
+    uint64_t hash = 0;  ///< of the resolved description, order of keys irrelevant
 };
 
 }  // namespace mote

@@ -14,11 +14,11 @@ enum class LightSamplerKind {
 
 /// How the path tracer samples; every choice is unbiased and only moves variance and cost.
 struct PathTracerParams {
-    int max_bounces = 1;        ///< scattering events of a path, [0, 10^6]; 1 = single scattering
-    int roulette_start = 4;     ///< events before Russian roulette may end a path
+    int max_bounces = 1;     ///< scattering events of a path, [0, 10^6]; 1 = single scattering
+    int roulette_start = 4;  ///< events before Russian roulette may end a path
     TransmittanceKind transmittance = TransmittanceKind::Ratio;  ///< of shadow rays
     LightSamplerKind light_sampler = LightSamplerKind::Auto;
-    bool equiangular = false;   ///< add equiangular distances by MIS (near lights, first event)
+    bool equiangular = false;  ///< add equiangular distances by MIS (near lights, first event)
 };
 
 }  // namespace mote

@@ -15,11 +15,11 @@ struct PrepareStats {
     double load_seconds = 0.0;
     double brick_seconds = 0.0;
     int grids_built = 0;
-    int grids_reused = 0;          ///< unchanged since an earlier frame of this run
+    int grids_reused = 0;  ///< unchanged since an earlier frame of this run
     int64_t particles = 0;
     size_t brick_bytes = 0;
-    int64_t non_finite_values = 0; ///< set to 0 on load
-    int64_t negative_values = 0;   ///< clamped to 0 on load
+    int64_t non_finite_values = 0;  ///< set to 0 on load
+    int64_t negative_values = 0;    ///< clamped to 0 on load
 };
 
 /// Keeps grids between frames, keyed by what they were built from.

@@ -25,7 +25,7 @@ struct Scene {
     std::optional<EnvironmentLight> environment;
     int frame = 1;
     double fps = 24.0;
-    double shutter_open = 0.0;   ///< frames, relative to `frame`
+    double shutter_open = 0.0;  ///< frames, relative to `frame`
     double shutter_close = 0.0;
     std::optional<NextFrame> next;  ///< only with PrepareNeeds::velocity
 };

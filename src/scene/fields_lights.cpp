@@ -1,0 +1,140 @@
+#include "scene/fields.h"
+
+namespace mote {
+namespace {
+
+constexpr std::array light_names = {"point", "distant", "sphere", "quad", "environment"};
+
+}  // namespace
+
+void describe(FieldVisitor& v, LightDescription& light)
+{
+    visit(v, {.key = "name", .doc = "For messages and overrides"}, light.name);
+    visit_choice(v, {.key = "type", .doc = "Kind of light", .required = true, .also = "kind"},
+                 light.kind, light_names);
+    v.select(light_names[static_cast<size_t>(light.kind)]);
+    visit(v,
+          {.key = "color",
+           .doc = "Multiplies `strength`; one number or RGB",
+           .range = between(0, 1e6),
+           .also = "colour tint",
+           .scalar_ok = true},
+          light.color);
+    visit(v,
+          {.key = "strength",
+           .doc = "point: intensity [W/sr]; distant: irradiance [W/m^2]; others: radiance "
+                  "[W/(m^2 sr)]",
+           .range = between(0, 1e20),
+           .also = "intensity radiance irradiance power energy"},
+          light.strength);
+    visit(v,
+          {.key = "position",
+           .doc = "Centre; quad: a corner",
+           .unit = "m",
+           .range = length_range,
+           .used_by = "point sphere quad"},
+          light.position);
+    visit(v,
+          {.key = "direction",
+           .doc = "Towards the light, any length",
+           .range = length_range,
+           .used_by = "distant"},
+          light.direction);
+    visit(v,
+          {.key = "radius",
+           .doc = "Radius of the sphere",
+           .unit = "m",
+           .range = size_range,
+           .used_by = "sphere"},
+          light.radius);
+    visit(v,
+          {.key = "edge_u",
+           .doc = "First edge; the light goes along edge_u x edge_v",
+           .unit = "m",
+           .range = length_range,
+           .used_by = "quad"},
+          light.edge_u);
+    visit(v,
+          {.key = "edge_v",
+           .doc = "Second edge",
+           .unit = "m",
+           .range = length_range,
+           .used_by = "quad"},
+          light.edge_v);
+    visit(v, {.key = "two_sided", .doc = "Shine to both sides", .used_by = "quad"},
+          light.two_sided);
+    visit(v,
+          {.key = "image",
+           .doc = "Latitude-longitude picture (.exr, .hdr, .png), multiplied by "
+                  "colour and strength",
+           .also = "map file texture",
+           .used_by = "environment"},
+          light.image);
+    visit(v,
+          {.key = "count",
+           .doc = "A swarm: this many copies, scattered over `spread`",
+           .range = between(1, 1'000'000),
+           .used_by = "point sphere"},
+          light.count);
+    visit(v,
+          {.key = "spread",
+           .doc = "Edges of the box around `position` that holds the copies",
+           .unit = "m",
+           .range = between(0, 1e7),
+           .used_by = "point sphere",
+           .scalar_ok = true},
+          light.spread);
+    visit(v, {.key = "seed", .doc = "Chooses the places of the copies", .used_by = "point sphere"},
+          light.seed);
+    visit_transform(v, light.transform);
+}
+
+void describe(FieldVisitor& v, MeshDescription& mesh)
+{
+    visit(v, {.key = "name", .doc = "For messages and overrides"}, mesh.name);
+    visit(v, {.key = "file", .doc = "Mesh file, relative to the scene file", .required = true},
+          mesh.file);
+    visit_transform(v, mesh.transform);
+}
+
+void describe(FieldVisitor& v, TransformKey& key)
+{
+    visit(v,
+          {.key = "frame",
+           .doc = "When; needed for two and more keys",
+           .unit = "frames",
+           .range = frame_range},
+          key.frame);
+    visit(v,
+          {.key = "translate",
+           .doc = "Shift, applied last",
+           .unit = "m",
+           .range = length_range,
+           .also = "position"},
+          key.translate);
+    visit(v,
+          {.key = "rotate",
+           .doc = "Turns about x, then y, then z; 0 to 360 is a full turn",
+           .unit = "degrees",
+           .range = between(-1e6, 1e6)},
+          key.rotate);
+    visit(v,
+          {.key = "scale",
+           .doc = "Size, applied first; one number or one per axis, not 0",
+           .range = between(-1e6, 1e6),
+           .scalar_ok = true},
+          key.scale);
+}
+
+void visit_transform(FieldVisitor& v, std::vector<TransformKey>& keys)
+{
+    visit_list(v,
+               {.key = "transform",
+                .doc = "Places the object in the world: one table, or keyframes",
+                .also = "translate rotate keys",
+                .carries = true,
+                .single_ok = true},
+               keys);
+}
+
+}  // namespace mote
