@@ -138,6 +138,23 @@ TEST(TilesStat, WithoutBiasTheWholeTestRejectsNoMoreThanItsNominalRate)
     RecordProperty("rejected_of_200", static_cast<int>(rejected));
 }
 
+TEST(TilesStat, PixelsOfOneRunAreNoReplicates)
+{
+    // Negative control: taking the pixels of one run as independent observations rejects the same
+    // unbiased estimator far more often, since it cannot see the error they share.
+    const FakeEstimator estimator;
+    int64_t rejected = 0;
+    for (uint32_t i = 0; i < 200; ++i) {
+        RunningStats tested;
+        RunningStats reference;
+        for (const float value : estimator.render(2 * i).find("R")->data) tested.add(value);
+        for (const float value : estimator.render(2 * i + 1).find("R")->data) reference.add(value);
+        const TestResult test = welch_test(estimate_mean(tested), estimate_mean(reference));
+        rejected += test.p <= 0.05 ? 1 : 0;
+    }
+    EXPECT_GT(rejected, binomial_bound(200, 0.05, 1e-12));
+}
+
 TEST(TilesStat, PValuesOfIndependentTilesAreUniform)
 {
     // 48 tiles of 16x16 exponential pixels over 16 runs: near enough to normal.
