@@ -142,15 +142,17 @@ TEST(TilesStat, PixelsOfOneRunAreNoReplicates)
 {
     // Negative control: taking the pixels of one run as independent observations rejects the same
     // unbiased estimator far more often, since it cannot see the error they share.
-    const FakeEstimator estimator;
+    FakeEstimator estimator;
+    estimator.shared_noise = 0.05;
     int64_t rejected = 0;
     for (uint32_t i = 0; i < 200; ++i) {
-        RunningStats tested;
-        RunningStats reference;
-        for (const float value : estimator.render(2 * i).find("R")->data) tested.add(value);
-        for (const float value : estimator.render(2 * i + 1).find("R")->data) reference.add(value);
-        const TestResult test = welch_test(estimate_mean(tested), estimate_mean(reference));
-        rejected += test.p <= 0.05 ? 1 : 0;
+        const LayeredImage tested = estimator.render(2 * i);
+        const LayeredImage reference = estimator.render(2 * i + 1);
+        RunningStats a;
+        RunningStats b;
+        for (const float value : tested.find("R")->data) a.add(value);
+        for (const float value : reference.find("R")->data) b.add(value);
+        rejected += welch_test(estimate_mean(a), estimate_mean(b)).p <= 0.05 ? 1 : 0;
     }
     EXPECT_GT(rejected, binomial_bound(200, 0.05, 1e-12));
 }
