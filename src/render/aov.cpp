@@ -1,0 +1,91 @@
+#include "render/aov.h"
+
+#include <fmt/core.h>
+
+#include "core/error.h"
+#include "core/text.h"
+
+namespace mote {
+namespace {
+
+std::vector<std::string> rgb(const std::string& layer)
+{
+    return {layer + ".R", layer + ".G", layer + ".B"};
+}
+
+std::vector<AovInfo> make_table()
+{
+    return {
+        {Aov::Z,
+         "Z",
+         {"Z"},
+         true,
+         "Nearest first collision over the pixel's samples, along the view axis [m]; 1e10: none. "
+         "Fog has no single depth: this is where it begins"},
+        {Aov::VolumeZ,
+         "volume_Z",
+         {"volume_Z.Z"},
+         true,
+         "Mean depth of first collisions along the view axis, so weighted by transmittance times "
+         "extinction [m]; 1e10: none"},
+        {Aov::Albedo, "albedo", rgb("albedo"), false,
+         "Single-scattering albedo at first collisions, premultiplied by alpha"},
+        {Aov::Motion,
+         "motion",
+         {"motion.u", "motion.v"},
+         true,
+         "Where what is seen moves until the next frame, mean over first collisions (else of the "
+         "background) [pixels]; u to the right, v up"},
+        {Aov::Variance, "variance", rgb("variance"), true,
+         "Variance of the pixel's mean (not of one sample), per channel of RGB"},
+        {Aov::Samples, "samples", {"samples.Y"}, true, "Camera paths per pixel"},
+        {Aov::VolumeDirect, "volume_direct", rgb("volume_direct"), false,
+         "Radiance scattered once"},
+        {Aov::VolumeIndirect, "volume_indirect", rgb("volume_indirect"), false,
+         "Radiance scattered twice or more"},
+        {Aov::VolumeEmission, "volume_emission", rgb("volume_emission"), false,
+         "Radiance emitted by volumes straight towards the camera"},
+        {Aov::Background, "background", rgb("background"), false,
+         "Radiance of environment and area lights seen through the volumes; the four parts sum to "
+         "RGB"},
+        {Aov::Transmittance, "transmittance", rgb("transmittance"), true,
+         "Share of light from behind all volumes that reaches the camera, computed in closed form "
+         "per camera ray (alpha is 1 minus an unbiased estimate of it)"},
+        {Aov::OpticalDepth,
+         "optical_depth",
+         {"opticalDepth.Y"},
+         true,
+         "Optical depth of all volumes, in closed form per camera ray, mean over the pixel"},
+    };
+}
+
+}  // namespace
+
+std::span<const AovInfo> aov_table()
+{
+    static const std::vector<AovInfo> table = make_table();
+    return table;
+}
+
+AovSet parse_aovs(const std::vector<std::string>& names)
+{
+    AovSet set;
+    std::vector<std::string> known;
+    for (const AovInfo& info : aov_table()) known.push_back(info.name);
+    for (const std::string& name : names) {
+        bool found = false;
+        for (const AovInfo& info : aov_table()) {
+            if (name != info.name) continue;
+            set.add(info.aov);
+            found = true;
+        }
+        if (found) continue;
+        std::string list;
+        for (const std::string& entry : known) list += (list.empty() ? "" : ", ") + entry;
+        throw Error(ExitCode::Input, fmt::format("output.aovs: unknown layer \"{}\"{}; known: {}",
+                                                 printable(name), did_you_mean(name, known), list));
+    }
+    return set;
+}
+
+}  // namespace mote

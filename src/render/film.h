@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/buffer2d.h"
+#include "core/math.h"
+#include "core/stats.h"
+#include "image/layers.h"
+#include "render/aov.h"
+
+namespace mote {
+
+/// What one camera path brings to a pixel, for the layers that were asked for.
+struct FilmSample {
+    Spectrum direct{0.0f};
+    Spectrum indirect{0.0f};
+    Spectrum emission{0.0f};
+    Spectrum background{0.0f};
+    float transmittance = 1.0f;  ///< unbiased estimate, for alpha
+    bool collided = false;       ///< whether depth and albedo mean something
+    float depth = infinity;      ///< of the first collision, along the view axis [m]
+    Spectrum albedo{0.0f};
+    Vec2 motion{0.0f};           ///< [px], v up
+    float optical_depth = 0.0f;  ///< in closed form, where a layer needs it
+
+    [[nodiscard]] Spectrum L() const { return direct + indirect + emission + background; }
+    [[nodiscard]] bool is_finite() const;
+};
+
+/// Mean of three channels, in double.
+struct MeanSpectrum {
+    glm::dvec3 sum{0.0};
+
+    void add(Spectrum s) { sum += glm::dvec3(s); }
+    [[nodiscard]] Spectrum mean(int64_t count) const;
+};
+
+/// All samples of one pixel. The pixel filter is the pixel's square (a box of width 1), sampled
+/// uniformly: every sample belongs to one pixel, so pixels are independent, the mean is the
+/// radiance averaged over the square, and data layers are not filtered any other way.
+class PixelFilm {
+  public:
+    /// Adds a sample; one with a value that is not finite counts as black and gives false.
+    bool add(const FilmSample& sample);
+
+    [[nodiscard]] int64_t count() const { return rgb_[0].count; }
+    [[nodiscard]] Spectrum mean() const;
+    [[nodiscard]] Spectrum variance_of_mean() const;  ///< Welford's M2 / (n (n - 1))
+    [[nodiscard]] float alpha() const;                ///< 1 - mean transmittance
+    /// Values of a layer, as many as it has channels.
+    void layer(Aov aov, float (&values)[3]) const;
+
+  private:
+    RunningStats rgb_[3];
+    MeanSpectrum direct_, indirect_, emission_, background_, albedo_;
+    double transmittance_ = 0.0;
+    double exact_transmittance_ = 0.0;
+    double optical_depth_ = 0.0;
+    double depth_ = 0.0;
+    float nearest_ = infinity;
+    int64_t collisions_ = 0;
+    glm::dvec2 collision_motion_{0.0};
+    glm::dvec2 background_motion_{0.0};
+};
+
+/// The frame's image being filled: R, G, B, A and the channels of the layers asked for.
+class Film {
+  public:
+    Film(int width, int height, const AovSet& aovs, PixelType color_type);
+
+    void store(int x, int y, const PixelFilm& pixel);
+    [[nodiscard]] LayeredImage take() { return std::move(image_); }
+
+  private:
+    struct Layer {
+        Aov aov;
+        size_t first_channel;
+        size_t channel_count;
+    };
+    std::vector<Layer> layers_;
+    LayeredImage image_;
+};
+
+}  // namespace mote
