@@ -39,6 +39,8 @@ class SceneCache {
 /// Which optional grids the renderer needs beyond what shading needs.
 struct PrepareNeeds {
     bool velocity = false;  ///< motion AOV or temporal reuse
+    /// Take .vdb files without the velocity grid as at rest; else they are an error.
+    bool velocity_may_be_missing = false;
 };
 
 /// Everything of `description` at a whole frame, ready to render. The one place where particles,

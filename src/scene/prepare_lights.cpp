@@ -1,0 +1,63 @@
+#include "scene/prepare_lights.h"
+
+#include "core/rng.h"
+
+namespace mote {
+namespace {
+
+/// Place of one copy of a light, in the light's object space.
+Vec3 scattered_position(const LightDescription& light, int copy)
+{
+    if (light.count == 1) return light.position;
+    Rng rng(light.seed, 0, Stream::Emitter, static_cast<uint32_t>(copy), 0);
+    return light.position + light.spread * (rng.uniform3() - Vec3(0.5f));
+}
+
+Light make_light(const LightDescription& light, const Trs& trs, int copy)
+{
+    const Affine world_from_object = to_affine(matrix(trs));
+    const Spectrum strength = light.strength * light.color;
+    const Vec3 position = world_from_object.point(scattered_position(light, copy));
+    switch (light.kind) {
+        case LightKind::Distant: {
+            const Vec3d direction = trs.rotate * glm::normalize(Vec3d(light.direction));
+            return DistantLight{Vec3(direction), strength};
+        }
+        case LightKind::Sphere: {
+            const Vec3 scale = glm::abs(Vec3(trs.scale));
+            return SphereLight{position, light.radius * (scale.x + scale.y + scale.z) / 3.0f,
+                               strength};
+        }
+        case LightKind::Quad:
+            return QuadLight{position, world_from_object.vector(light.edge_u),
+                             world_from_object.vector(light.edge_v), strength, light.two_sided};
+        case LightKind::Point:
+        case LightKind::Environment:
+            break;
+    }
+    return PointLight{position, strength};
+}
+
+}  // namespace
+
+std::vector<Light> make_lights(const std::vector<LightDescription>& descriptions, double frame)
+{
+    std::vector<Light> lights;
+    for (const LightDescription& light : descriptions) {
+        const bool is_black = light.strength * max_component(light.color) <= 0.0f;
+        if (light.kind == LightKind::Environment || is_black) continue;
+        const Trs trs = evaluate(light.transform, frame);
+        const bool is_swarm = light.kind == LightKind::Point || light.kind == LightKind::Sphere;
+        const int copies = is_swarm ? light.count : 1;
+        for (int i = 0; i < copies; ++i) lights.push_back(make_light(light, trs, i));
+    }
+    return lights;
+}
+
+Mat3 map_from_world(const LightDescription& environment, double frame)
+{
+    const Trs trs = evaluate(environment.transform, frame);
+    return Mat3(glm::mat3_cast(glm::conjugate(trs.rotate)));
+}
+
+}  // namespace mote

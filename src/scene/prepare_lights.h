@@ -1,0 +1,19 @@
+#pragma once
+
+#include <vector>
+
+#include "scene/description.h"
+#include "scene/light.h"
+
+namespace mote {
+
+/// The lights other than the environment, placed at a (fractional) frame; swarms are scattered.
+/// Transforms move positions and directions; a sphere's radius takes the mean scale.
+[[nodiscard]] std::vector<Light> make_lights(const std::vector<LightDescription>& descriptions,
+                                             double frame);
+
+/// Rotation from world directions to those of an environment's image. Scale and shift of its
+/// transform mean nothing at infinity and are ignored.
+[[nodiscard]] Mat3 map_from_world(const LightDescription& environment, double frame);
+
+}  // namespace mote
