@@ -22,6 +22,8 @@ constexpr const char* pattern_help = "#### , %04d , $F4 or {frame:04} stand for 
 const std::map<std::string, ExistingMode> existing_modes{{"overwrite", ExistingMode::Overwrite},
                                                          {"skip", ExistingMode::Skip},
                                                          {"verify", ExistingMode::Verify}};
+const std::map<std::string, ExistingMode> cache_existing_modes{
+    {"overwrite", ExistingMode::Overwrite}, {"skip", ExistingMode::Skip}};
 const std::map<std::string, ProgressMode> progress_modes{
     {"auto", ProgressMode::Auto}, {"json", ProgressMode::Json}, {"none", ProgressMode::None}};
 
@@ -171,6 +173,9 @@ void bind_cache(CLI::App& app, CacheOptions& o)
         ->type_name("PATTERN");
     app.add_option("--grids", o.grids, "VDB density grids; tokens as for --points")
         ->type_name("PATTERN");
+    app.add_option("--channels", o.channels,
+                   "Grids beside density, by comma: velocity, temperature, color")
+        ->type_name("LIST");
     app.add_option("--voxel-size", o.voxel_size, "Edge of a voxel [m]. Default: the scene's, 0.02")
         ->check(CLI::Range(1e-6, 1e6))
         ->type_name("M");
@@ -184,8 +189,8 @@ void bind_cache(CLI::App& app, CacheOptions& o)
         ->type_name("MOTE=FILE")
         ->allow_extra_args(false);
     bind_overrides(app, o.overrides);
-    add_choice(app, "--existing", o.existing, existing_modes,
-               "Files already there: overwrite them (the default), or skip");
+    add_choice(app, "--existing", o.existing, cache_existing_modes,
+               "Files already there: overwrite them (the default), or skip those that open");
     app.add_option("--threads", o.threads, "Threads")->check(CLI::Range(1, 1024))->type_name("N");
     add_choice(app, "--progress", o.progress, progress_modes, "As for mote render");
     bind_log(app, o.log);

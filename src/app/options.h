@@ -64,6 +64,7 @@ struct CacheOptions {
     std::string frames;
     std::string points;                   ///< pattern of VDB points; empty: none
     std::string grids;                    ///< pattern of VDB density grids; empty: none
+    std::string channels;                 ///< grids beside density: "velocity,temperature,color"
     std::optional<float> voxel_size;      ///< [m]; empty: the scene's
     double fps = 24.0;                    ///< plain files
     bool velocity_per_frame = false;      ///< plain files

@@ -65,6 +65,11 @@ Progress::Progress(ProgressStyle style, int frame_count, Terminal terminal)
 {
 }
 
+Progress::~Progress()
+{
+    if (!finished_) finish(true);
+}
+
 double Progress::fraction() const
 {
     if (frame_count_ <= 0) return 1.0;
@@ -125,6 +130,7 @@ void Progress::skip_frame(int frame, const std::string& file)
 void Progress::finish(bool stopped)
 {
     const std::lock_guard lock(mutex_);
+    finished_ = true;
     if (style_ == ProgressStyle::Json) {
         show(stopped ? "stopped" : "done", "");
         return;
@@ -178,8 +184,10 @@ Progress::Terminal stderr_terminal()
     return terminal;
 }
 
-ProgressStyle automatic_style()
+ProgressStyle progress_style(ProgressMode mode, bool quiet)
 {
+    if (mode == ProgressMode::Json) return ProgressStyle::Json;
+    if (mode == ProgressMode::None || quiet) return ProgressStyle::None;
     return isatty(STDERR_FILENO) != 0 ? ProgressStyle::Bar : ProgressStyle::Lines;
 }
 

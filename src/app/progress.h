@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "app/options.h"
+
 namespace mote {
 
 /// How progress is shown.
@@ -31,6 +33,10 @@ class Progress {
     };
 
     Progress(ProgressStyle style, int frame_count, Terminal terminal);
+    /// Without finish() before, the run counts as stopped.
+    ~Progress();
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
 
     /// A frame starts; `steps` is how often step() will be called in it, as far as known.
     void begin_frame(int frame, int64_t steps);
@@ -60,6 +66,7 @@ class Progress {
     int frame_ = 0;
     int done_ = 0;
     int skipped_ = 0;
+    bool finished_ = false;
     int64_t last_steps_ = 0;
     std::atomic<int64_t> steps_{0};
     std::atomic<int64_t> expected_steps_{0};
@@ -69,7 +76,7 @@ class Progress {
 /// A Terminal on stderr with the monotonic clock.
 [[nodiscard]] Progress::Terminal stderr_terminal();
 
-/// The style that "auto" means: a bar on a terminal, log lines otherwise.
-[[nodiscard]] ProgressStyle automatic_style();
+/// The style of a command: auto means a bar on a terminal, log lines otherwise, nothing if quiet.
+[[nodiscard]] ProgressStyle progress_style(ProgressMode mode, bool quiet);
 
 }  // namespace mote

@@ -1,0 +1,87 @@
+#include "app/run_stats.h"
+
+#include <ctime>
+
+#include <nlohmann/json.hpp>
+
+#include "app/image_metadata.h"
+#include "image/atomic_file.h"
+#include "image/output_file.h"
+
+namespace mote {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double seconds_of(clockid_t clock)
+{
+    timespec time{};
+    clock_gettime(clock, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+Json to_json(const FrameRecord& r)
+{
+    Json j{{"frame", r.frame}, {"file", r.file}, {"skipped", r.skipped}, {"reason", r.reason}};
+    if (r.skipped) return j;
+    j["wall_s"] = {{"total", r.total_seconds},
+                   {"prepare", r.prepare_seconds},
+                   {"render", r.render.render_seconds},
+                   {"write", r.write_seconds}};
+    j["cpu_s"] = {{"total", r.total_cpu_seconds},
+                  {"prepare", r.prepare_cpu_seconds},
+                  {"render", r.render.render_cpu_seconds}};
+    j["prepare"] = {{"particles_s", r.prepare.particle_seconds},
+                    {"rasterize_s", r.prepare.rasterize_seconds},
+                    {"load_s", r.prepare.load_seconds},
+                    {"bricks_s", r.prepare.brick_seconds},
+                    {"grids_built", r.prepare.grids_built},
+                    {"grids_reused", r.prepare.grids_reused},
+                    {"particles", r.prepare.particles},
+                    {"brick_bytes", r.prepare.brick_bytes},
+                    {"non_finite_values", r.prepare.non_finite_values},
+                    {"negative_values", r.prepare.negative_values}};
+    j["paths"] = r.render.paths;
+    j["dropped_non_finite"] = r.render.dropped_non_finite;
+    j["truncated_paths"] = r.render.truncated_paths;
+    j["peak_memory_bytes"] = r.peak_memory;
+    return j;
+}
+
+}  // namespace
+
+double wall_seconds()
+{
+    return seconds_of(CLOCK_MONOTONIC);
+}
+
+double cpu_seconds()
+{
+    return seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+}
+
+void write_run_stats(const std::string& path, const SceneDescription& scene, int threads,
+                     const std::vector<FrameRecord>& records, bool finished)
+{
+    Json frames = Json::array();
+    for (const FrameRecord& record : records) frames.push_back(to_json(record));
+    const Json j{{"version", MOTE_VERSION},
+                 {"scene", scene.path},
+                 {"scene_hash", scene_hash_text(scene)},
+                 {"width", scene.render.width},
+                 {"height", scene.render.height},
+                 {"samples", scene.render.samples},
+                 {"seed", scene.render.seed},
+                 {"threads", threads},
+                 {"finished", finished},
+                 {"frames", std::move(frames)}};
+    const std::string text = j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    write_atomically(path, [&](const std::string& temporary_path) {
+        OutputFile file(temporary_path, path);
+        file.write(text.data(), text.size());
+        file.finish();
+    });
+}
+
+}  // namespace mote
