@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/rng.h"
-#include "volumes/brick_walk.h"
+#include "volumes/cell_walk.h"
 
 namespace mote {
 
@@ -12,11 +12,16 @@ namespace mote {
     return -std::log(1.0f - rng.uniform());
 }
 
+/// Expected tentative collisions in a brick from which its cells are integrated instead: some 10 to
+/// 20 cells of 13 ns against 30 to 45 ns for each dependent lookup. It also bounds the cost of
+/// opaque media, where tentative collisions are closer together than floats are.
+inline constexpr float dense_span = 16.0f;
+
 /// Tentative collisions along a ray, nearest first: the one walk behind all trackers.
-/// `bound(range, length)` gives the majorant (in density units) of a span of world length `length`
-/// through a brick; `keep_going(s, span, majorant)` is called at each tentative collision and may
-/// stop the walk by returning false. `scale` turns density into extinction [1/m].
-/// Returns false if stopped, true if the ray left the grid.
+/// `bound(range, span)` gives the majorant (in density units) of a span through a brick;
+/// `keep_going(s, span, majorant)` is called at each tentative collision and may stop the walk by
+/// returning false. `scale` turns density into extinction [1/m]. Returns false if stopped, true if
+/// the ray left the grid.
 ///
 /// One exponential optical depth is spent across brick borders (the process is memoryless, so
 /// redrawing at each border would be right too, at one logarithm per brick).
@@ -27,7 +32,7 @@ bool for_each_collision(const BrickGrid& grid, const LocalRay& ray, float scale,
     float left = sample_optical_depth(rng);
     return for_each_brick(grid, ray, [&](const BrickSpan& span) {
         const BrickRange& range = grid.ranges[static_cast<size_t>(span.brick)];
-        const float majorant = bound(range, span.s1 - span.s0);
+        const float majorant = bound(range, span);
         const float sigma_maj = scale * majorant;
         float s = span.s0;
         for (;;) {
@@ -43,28 +48,81 @@ bool for_each_collision(const BrickGrid& grid, const LocalRay& ray, float scale,
     });
 }
 
+/// Where the integral of density over a cell, counted from its start, reaches `goal`: the root of a
+/// monotone function by Newton's method, kept inside a bracket.
+[[nodiscard]] inline float invert_cell(const BrickGrid& grid, const LocalRay& ray,
+                                       const BrickSpan& span, const CellSpan& cell, float goal)
+{
+    float lo = cell.s0;
+    float hi = cell.s1;
+    const float whole = cell.integral();
+    float s = cell.s0 + (cell.s1 - cell.s0) * std::clamp(goal / whole, 0.0f, 1.0f);
+    for (int i = 0; i < 20; ++i) {
+        CellSpan part{cell.s0, s, cell.v0, 0.0f, 0.0f};
+        part.vm = sample_in_brick(grid, span, ray.at(0.5f * (cell.s0 + s)));
+        part.v1 = sample_in_brick(grid, span, ray.at(s));
+        const float excess = part.integral() - goal;
+        if (std::abs(excess) <= 2e-7f * whole) break;
+        (excess > 0.0f ? hi : lo) = s;
+        const float newton = s - excess / part.v1;
+        s = newton > lo && newton < hi ? newton : 0.5f * (lo + hi);
+    }
+    return s;
+}
+
+/// Spends the optical depth `left` in one brick by its cells' closed-form integrals. Returns where
+/// it ran out, or < 0 with what is left.
+[[nodiscard]] inline float invert_brick(const BrickGrid& grid, const LocalRay& ray,
+                                        const BrickSpan& span, float scale, float& left)
+{
+    float found = -1.0f;
+    for_each_cell(grid, ray, span, [&](const CellSpan& cell) {
+        const float tau = scale * cell.integral();
+        if (left >= tau) {
+            left -= tau;
+            return true;
+        }
+        found = invert_cell(grid, ray, span, cell, left / scale);
+        return false;
+    });
+    return found;
+}
+
 /// First real collision, by delta tracking (Woodcock et al. 1965) with brick majorants; s < 0 if
-/// the ray leaves.
+/// the ray leaves. Bricks of one value and dense bricks are inverted in closed form.
 [[nodiscard]] inline float track_delta(const BrickGrid& grid, const LocalRay& ray, float scale,
                                        Rng& rng)
 {
     float found = -1.0f;
-    for_each_collision(
-        grid, ray, scale, rng, [](const BrickRange& range, float) { return range.max; },
-        [&](float s, const BrickSpan& span, float majorant) {
-            const BrickRange& range = grid.ranges[static_cast<size_t>(span.brick)];
-            const bool is_uniform = range.min == range.max;
-            if (is_uniform || rng.uniform() * majorant < sample_in_brick(grid, span, ray.at(s))) {
+    float left = sample_optical_depth(rng);
+    for_each_brick(grid, ray, [&](const BrickSpan& span) {
+        const BrickRange& range = grid.ranges[static_cast<size_t>(span.brick)];
+        const float sigma_maj = scale * range.max;
+        float s = span.s0;
+        if ((span.s1 - s) * sigma_maj > dense_span && range.min < range.max) {
+            found = invert_brick(grid, ray, span, scale, left);
+            return found < 0.0f;
+        }
+        for (;;) {
+            const float here = (span.s1 - s) * sigma_maj;
+            if (!(here > left)) {
+                left -= here;
+                return true;
+            }
+            s += left / sigma_maj;
+            if (range.min == range.max ||
+                rng.uniform() * range.max < sample_in_brick(grid, span, ray.at(s))) {
                 found = s;
                 return false;
             }
-            return true;
-        });
+            left = sample_optical_depth(rng);
+        }
+    });
     return found;
 }
 
-/// Unbiased transmittance by ratio tracking (Novak et al. 2014). Bricks of one value take part
-/// in closed form.
+/// Unbiased transmittance by ratio tracking (Novak et al. 2014). Bricks of one value and dense
+/// bricks take part in closed form.
 [[nodiscard]] inline float track_ratio(const BrickGrid& grid, const LocalRay& ray, float scale,
                                        Rng& rng)
 {
@@ -72,9 +130,10 @@ bool for_each_collision(const BrickGrid& grid, const LocalRay& ray, float scale,
     float tau = 0.0f;
     for_each_collision(
         grid, ray, scale, rng,
-        [&](const BrickRange& range, float length) {
-            if (range.min < range.max) return range.max;
-            tau += scale * range.max * length;
+        [&](const BrickRange& range, const BrickSpan& span) {
+            const bool is_dense = (span.s1 - span.s0) * scale * range.max > dense_span;
+            if (range.min < range.max && !is_dense) return range.max;
+            tau += scale * integrate_brick(grid, ray, span);
             return 0.0f;
         },
         [&](float s, const BrickSpan& span, float majorant) {
@@ -93,9 +152,12 @@ bool for_each_collision(const BrickGrid& grid, const LocalRay& ray, float scale,
     float tau = 0.0f;
     for_each_collision(
         grid, ray, scale, rng,
-        [&](const BrickRange& range, float length) {
-            tau += scale * range.mean * length;
-            return std::max(range.max - range.mean, range.mean - range.min);
+        [&](const BrickRange& range, const BrickSpan& span) {
+            const float majorant = std::max(range.max - range.mean, range.mean - range.min);
+            const float length = span.s1 - span.s0;
+            const bool is_dense = length * scale * majorant > dense_span;
+            tau += scale * (is_dense ? integrate_brick(grid, ray, span) : range.mean * length);
+            return is_dense ? 0.0f : majorant;
         },
         [&](float s, const BrickSpan& span, float majorant) {
             const float mean = grid.ranges[static_cast<size_t>(span.brick)].mean;

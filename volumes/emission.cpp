@@ -16,6 +16,12 @@ bool has_density(const Volume& volume)
     return volume.density && !volume.density->index_bounds.is_empty();
 }
 
+Affine object_from_local(const BrickGrid& grid)
+{
+    const Mat3 linear = glm::inverse(grid.index_from_object.linear);
+    return {linear, linear * (Vec3(grid.lo) - grid.index_from_object.offset)};
+}
+
 /// The black-body term of j at a point whose density is known.
 Spectrum glow(const Volume& volume, float density, Vec3 p_object)
 {
@@ -33,10 +39,41 @@ Spectrum integrate_jittered(const BrickGrid& grid, const LocalRay& ray, Rng& rng
     Spectrum sum(0.0f);
     for_each_brick(grid, ray, [&](const BrickSpan& span) {
         const float length = span.s1 - span.s0;
-        const Vec3 p = ray.at(span.s0 + rng.uniform() * length);
-        sum += length * j_at(sample_in_brick(grid, span, p), p);
+        const float s = span.s0 + rng.uniform() * length;
+        const Vec3 p = ray.at(s);
+        sum += length * j_at(sample_in_brick(grid, span, p), p, ray.world_t(s));
         return true;
     });
+    return sum;
+}
+
+/// Both terms of j along a ray, each lookup multiplied by weight(t, object_from_local, p_local).
+template <class Weight>
+Spectrum integrate_terms(const Volume& volume, const Ray& ray, Interval range, Rng& rng,
+                         Weight&& weight)
+{
+    const Emission& e = volume.emission_params;
+    if (!e.is_on()) return Spectrum(0.0f);
+    const VolumeFrames frames = frames_at(volume, ray.time);
+    Spectrum sum(0.0f);
+    if (e.emission_scale > 0.0f && volume.emission && !volume.emission->index_bounds.is_empty()) {
+        const BrickGrid& grid = *volume.emission;
+        const LocalRay local = make_local_ray(grid, frames.emission, ray, range);
+        const Affine to_object = object_from_local(grid);
+        const Spectrum per_unit = e.emission_scale * e.emission_color;
+        sum += integrate_jittered(grid, local, rng, [&](float value, Vec3 p, float t) {
+            return value > 0.0f ? value * weight(t, to_object, p) * per_unit : Spectrum(0.0f);
+        });
+    }
+    if (e.blackbody_scale > 0.0f && has_density(volume)) {
+        const BrickGrid& grid = *volume.density;
+        const LocalRay local = make_local_ray(grid, frames.density, ray, range);
+        const Affine to_object = object_from_local(volume);
+        sum += integrate_jittered(grid, local, rng, [&](float density, Vec3 p, float t) {
+            if (!(density > 0.0f)) return Spectrum(0.0f);
+            return weight(t, to_object, p) * glow(volume, density, to_object.point(p));
+        });
+    }
     return sum;
 }
 
@@ -64,26 +101,17 @@ Spectrum emission_at(const Volume& volume, Vec3 p_object)
 
 Spectrum estimate_emission(const Volume& volume, const Ray& ray, Interval range, Rng& rng)
 {
-    const Emission& e = volume.emission_params;
-    if (!e.is_on()) return Spectrum(0.0f);
-    const VolumeFrames frames = frames_at(volume, ray.time);
-    Spectrum sum(0.0f);
-    if (e.emission_scale > 0.0f && volume.emission && !volume.emission->index_bounds.is_empty()) {
-        const BrickGrid& grid = *volume.emission;
-        const LocalRay local = make_local_ray(grid, frames.emission, ray, range);
-        const Spectrum per_unit = e.emission_scale * e.emission_color;
-        sum += integrate_jittered(grid, local, rng,
-                                  [&](float value, Vec3) { return value * per_unit; });
-    }
-    if (e.blackbody_scale > 0.0f && has_density(volume)) {
-        const BrickGrid& grid = *volume.density;
-        const LocalRay local = make_local_ray(grid, frames.density, ray, range);
-        const Affine to_object = object_from_local(volume);
-        sum += integrate_jittered(grid, local, rng, [&](float density, Vec3 p) {
-            return glow(volume, density, to_object.point(p));
-        });
-    }
-    return sum;
+    return integrate_terms(
+        volume, ray, range, rng,
+        [](float /*t*/, const Affine& /*to_object*/, Vec3 /*p*/) { return 1.0f; });
+}
+
+Spectrum estimate_emission(const Volume& volume, const Ray& ray, Interval range, Rng& rng,
+                           const EmissionWeight& weight)
+{
+    return integrate_terms(volume, ray, range, rng, [&](float t, const Affine& to_object, Vec3 p) {
+        return weight(t, to_object.point(p));
+    });
 }
 
 }  // namespace mote

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "core/rng.h"
@@ -18,6 +19,13 @@ namespace mote {
 /// E[integral_0^{t_c} j dt] = integral T j dt. One jittered lookup per brick.
 [[nodiscard]] Spectrum estimate_emission(const Volume& volume, const Ray& ray, Interval range,
                                          Rng& rng);
+
+/// Factor on each lookup of estimate_emission: world distance t and object-space point.
+using EmissionWeight = std::function<float(float t, Vec3 p_object)>;
+
+/// The same with every lookup multiplied by `weight`: a share for multiple importance sampling.
+[[nodiscard]] Spectrum estimate_emission(const Volume& volume, const Ray& ray, Interval range,
+                                         Rng& rng, const EmissionWeight& weight);
 
 /// Where a volume emits: a distribution over brick positions, about in proportion to the power
 /// they give off, never 0 where j is not. Object space, so it holds for the whole shutter.

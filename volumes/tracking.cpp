@@ -40,27 +40,6 @@ float optical_depth_up_to(const Volume& volume, const Ray& ray, Interval range, 
     return static_cast<float>(sum * static_cast<double>(volume.density_scale));
 }
 
-/// Root of the cell's monotone integral: where it reaches `goal`. Newton, kept inside a bracket.
-float invert_cell(const BrickGrid& grid, const LocalRay& ray, const BrickSpan& span,
-                  const CellSpan& cell, float goal)
-{
-    float lo = cell.s0;
-    float hi = cell.s1;
-    const float whole = cell.integral();
-    float s = cell.s0 + (cell.s1 - cell.s0) * std::clamp(goal / whole, 0.0f, 1.0f);
-    for (int i = 0; i < 20; ++i) {
-        CellSpan part{cell.s0, s, cell.v0, 0.0f, 0.0f};
-        part.vm = sample_in_brick(grid, span, ray.at(0.5f * (cell.s0 + s)));
-        part.v1 = sample_in_brick(grid, span, ray.at(s));
-        const float excess = part.integral() - goal;
-        if (std::abs(excess) <= 2e-7f * whole) break;
-        (excess > 0.0f ? hi : lo) = s;
-        const float newton = s - excess / part.v1;
-        s = newton > lo && newton < hi ? newton : 0.5f * (lo + hi);
-    }
-    return s;
-}
-
 }  // namespace
 
 std::optional<Collision> sample_free_flight(const Media& media, const Ray& ray, Interval range,

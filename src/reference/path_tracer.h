@@ -9,14 +9,14 @@ namespace mote {
 
 /// What one camera path brings. The parts of L are disjoint and sum to it.
 struct PathResult {
-    Spectrum direct{0.0f};      ///< one scattering event
-    Spectrum indirect{0.0f};    ///< two and more
-    Spectrum emission{0.0f};    ///< from emissive media straight to the camera
-    Spectrum background{0.0f};  ///< environment and area lights seen through the media
-    float transmittance = 1.0f; ///< unbiased estimate, camera to infinity
-    float depth = infinity;     ///< of the first collision [m]
-    Spectrum albedo{0.0f};      ///< at the first collision
-    bool truncated = false;     ///< max_bounces cut a path that could have gone on
+    Spectrum direct{0.0f};       ///< one scattering event
+    Spectrum indirect{0.0f};     ///< two and more
+    Spectrum emission{0.0f};     ///< from emissive media straight to the camera
+    Spectrum background{0.0f};   ///< environment and area lights seen through the media
+    float transmittance = 1.0f;  ///< unbiased estimate, camera to infinity
+    float depth = infinity;      ///< of the first collision [m]
+    Spectrum albedo{0.0f};       ///< at the first collision
+    bool truncated = false;      ///< max_bounces cut a path that could have gone on
 
     [[nodiscard]] Spectrum L() const { return direct + indirect + emission + background; }
 };

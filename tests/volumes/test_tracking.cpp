@@ -308,7 +308,7 @@ TEST(TrackingStat, NegativeControlATooLowMajorantIsFound)
     const RunningStats wrong = run_trials(60'000, 61, [&](Rng& rng) {
         return for_each_collision(
                    grid, local, volume.density_scale, rng,
-                   [](const BrickRange& range, float) { return 0.8f * range.max; },
+                   [](const BrickRange& range, const BrickSpan&) { return 0.8f * range.max; },
                    [&](float s, const BrickSpan& span, float majorant) {
                        return rng.uniform() * majorant >= sample_in_brick(grid, span, local.at(s));
                    })

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <vector>
+
+#include "core/math.h"
+#include "core/rng.h"
+
+namespace mote {
+
+/// Binary tree over lights that chooses one at a point by walking down, at each node in proportion
+/// to power over squared distance. Cost: O(log lights). The probability of any light is
+/// reproducible, as MIS needs. After Conty Estevez and Kulla 2018, without orientation bounds.
+class LightTree {
+  public:
+    struct Item {
+        int id = -1;
+        Bounds3 bounds;
+        float power = 0.0f;  ///< > 0 [W]
+    };
+
+    LightTree() = default;
+    explicit LightTree(std::vector<Item> items);
+
+    struct Choice {
+        int id = -1;
+        float pmf = 0.0f;
+    };
+    /// Chooses a light for point x. Asserts that the tree is not empty.
+    [[nodiscard]] Choice sample(Vec3 x, Rng& rng) const;
+
+    /// Probability of `sample` choosing the item of this id at x; 0 for unknown ids.
+    [[nodiscard]] float pmf(int id, Vec3 x) const;
+
+    /// Power over squared distance of everything together [W/m^2].
+    [[nodiscard]] double importance(Vec3 x) const;
+
+    /// Calls f(id) for every light whose bounds the ray meets.
+    template <class F>
+    void for_each_on_ray(const Ray& ray, F&& f) const;
+
+    [[nodiscard]] bool is_empty() const { return nodes_.empty(); }
+
+  private:
+    struct Node {
+        Bounds3 bounds;
+        float power = 0.0f;
+        int parent = -1;
+        int right = -1;  ///< the left child follows its parent
+        int id = -1;     ///< leaves only
+    };
+    int build(std::vector<Item>& items, size_t begin, size_t end, int parent);
+    [[nodiscard]] double left_probability(const Node& node, size_t index, Vec3 x) const;
+
+    std::vector<Node> nodes_;
+    std::vector<int> leaf_of_id_;
+};
+
+template <class F>
+void LightTree::for_each_on_ray(const Ray& ray, F&& f) const
+{
+    if (nodes_.empty()) return;
+    int stack[64];  // the tree is balanced: its depth is at most log2(lights) + 1
+    int top = 0;
+    stack[top++] = 0;
+    while (top > 0) {
+        const int index = stack[--top];
+        const Node& node = nodes_[static_cast<size_t>(index)];
+        const Interval inside = clip(ray.o, ray.d, node.bounds, {0.0f, infinity});
+        if (inside.t0 > inside.t1) continue;  // flat boxes have intervals of length 0
+        if (node.id >= 0) {
+            f(node.id);
+            continue;
+        }
+        stack[top++] = node.right;
+        stack[top++] = index + 1;
+    }
+}
+
+}  // namespace mote

@@ -1,0 +1,72 @@
+#include "reference/path_tracer.h"
+
+#include "reference/direct_light.h"
+
+namespace mote {
+namespace {
+
+/// The part of the result that light after this many scattering events belongs to.
+Spectrum& part_of(PathResult& result, int event_count)
+{
+    return event_count == 1 ? result.direct : result.indirect;
+}
+
+}  // namespace
+
+PathResult trace_path(const Scene& scene, const LightSampler& lights,
+                      const PathTracerParams& params, const Ray& camera_ray, Rng& rng)
+{
+    const TraceContext context{scene, lights, params};
+    const bool has_emission = !lights.emissive_volumes().empty();
+    PathResult result;
+    Spectrum beta(1.0f);
+    LightRay light_ray{camera_ray, 0.0f, true};
+    for (int event_count = 0;; ++event_count) {
+        const Ray& ray = light_ray.ray;
+        const bool is_last = event_count == params.max_bounces;
+        const bool needs_flight = event_count == 0 || !is_last || has_emission;
+        // A ray after the last event only collects light: a transmittance estimate is less noisy
+        // than asking whether a free flight gets there.
+        std::optional<Collision> collision;
+        std::optional<float> t_end;
+        if (needs_flight) {
+            collision = sample_free_flight(scene.media, ray, {0.0f, infinity}, rng);
+            t_end = collision ? collision->t : infinity;
+        }
+        if (has_emission) {
+            const Spectrum emission = beta * seen_emission(context, light_ray, *t_end, rng);
+            (event_count == 0 ? result.emission : part_of(result, event_count)) += emission;
+        }
+        if (is_last && event_count > 0) t_end.reset();
+        const Spectrum seen = beta * seen_light(context, light_ray, t_end, rng);
+        (event_count == 0 ? result.background : part_of(result, event_count)) += seen;
+
+        if (is_last) {
+            result.truncated = event_count > 0 || collision;
+        }
+        if (event_count == 0 && collision) {
+            result.transmittance = 0.0f;
+            result.depth = collision->t;
+        }
+        if (!collision) return result;
+        const Volume& volume = scene.media.volumes[static_cast<size_t>(collision->volume)];
+        const Spectrum albedo = albedo_at(volume, collision->p_object);
+        if (event_count == 0) result.albedo = albedo;
+        if (is_last) return result;
+
+        beta *= albedo;
+        if (!(max_component(beta) > 0.0f)) return result;
+        const ScatterEvent event{ray.at(collision->t), -ray.d, ray.time, &volume.phase};
+        part_of(result, event_count + 1) += beta * estimate_direct_light(context, event, rng);
+
+        if (event_count + 1 > params.roulette_start) {
+            const float survival = std::min(1.0f, max_component(beta));
+            if (rng.uniform() >= survival) return result;
+            beta /= survival;
+        }
+        const Vec3 wi = sample_phase(volume.phase, event.wo, rng.uniform2());
+        light_ray = {Ray{event.x, wi, event.time}, phase_pdf(volume.phase, event.wo, wi), false};
+    }
+}
+
+}  // namespace mote
