@@ -64,9 +64,11 @@ struct AttributeMask {
     bool age = true;
 };
 
-/// Particles at a (possibly fractional) scene frame. `base_dir` resolves relative paths. Caches
-/// take the nearest whole frame at or below, advanced by velocity for the fraction. Non-finite
-/// positions, negative radii and masses are dropped, with a count in the log.
+/// Particles at a (possibly fractional) scene frame; emitters take frame / fps as their time [s].
+/// `base_dir` resolves relative paths. Caches take the nearest whole frame at or below, advanced
+/// by velocity for the fraction unless the next frame shows the same file. Particles with
+/// non-finite values, radii that are not above 0 or negative masses are dropped, with a count in
+/// the log.
 /// Throws Error(Input) naming the file and the remedy.
 [[nodiscard]] ParticleSet particles_at(const SourceParams& source, double frame, double fps,
                                        const std::string& base_dir, const AttributeMask& mask = {});

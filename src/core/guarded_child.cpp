@@ -53,7 +53,7 @@ enum Report : char { done = 'd', failed = 'f', out_of_memory = 'm' };
 
 void send(int pipe_end, char kind, const char* text)
 {
-    char buffer[512];
+    char buffer[2048];
     buffer[0] = kind;
     const size_t length = std::min(std::strlen(text), sizeof buffer - 1);
     std::memcpy(buffer + 1, text, length);
@@ -112,7 +112,7 @@ Outcome wait_for(pid_t child, int pipe_end, int wall_seconds)
             kill(child, SIGKILL);
             break;
         }
-        char buffer[512];
+        char buffer[2048];
         const ssize_t count = read(pipe_end, buffer, sizeof buffer);
         if (count < 0 && errno == EINTR) continue;
         if (count <= 0) break;  // end of file: the child is gone
@@ -163,7 +163,9 @@ void run_in_child(const std::string& what, const ChildLimits& limits,
     if (!out.report.empty()) {
         if (out.report[0] == done) return;
         const ExitCode code = out.report[0] == out_of_memory ? ExitCode::Memory : ExitCode::Input;
-        throw Error(code, fmt::format("{}: {}", what, printable(out.report.substr(1))));
+        const std::string text = printable(out.report.substr(1), 2000);
+        if (text.starts_with(what + ":")) throw Error(code, text);  // it names the file itself
+        throw Error(code, fmt::format("{}: {}", what, text));
     }
     std::string reason = "reading it crashed the checking process";
     if (out.timed_out) {

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/math.h"
+#include "particles/particle_set.h"
+#include "particles/source.h"
+
+namespace mote {
+
+/// Range of one attribute over all particles; vectors by their components.
+struct AttributeRange {
+    std::string name;  ///< mote's: "position", "velocity", ...
+    std::string unit;  ///< "m", "m/s", ...; may be empty
+    int components = 1;
+    double lo[3] = {0.0, 0.0, 0.0};
+    double hi[3] = {0.0, 0.0, 0.0};
+};
+
+/// What `mote info` and `mote check` say about particles.
+struct ParticleInfo {
+    int64_t count = 0;
+    Bounds3 bounds;                          ///< of the positions [m]; empty when there are none
+    double total_mass = 0.0;                 ///< [kg]
+    float largest_speed = 0.0f;              ///< [m/s]
+    int64_t memory_bytes = 0;                ///< of the arrays
+    std::vector<AttributeRange> attributes;  ///< those that the set has
+};
+
+[[nodiscard]] ParticleInfo describe_particles(const ParticleSet& particles);
+
+/// A particle file in world units, read as `params` say (its sequence is not looked at).
+/// Throws as particles_at does.
+[[nodiscard]] ParticleInfo describe_particle_file(const std::string& path,
+                                                  const CacheParams& params = {},
+                                                  double fps = 24.0);
+
+}  // namespace mote
