@@ -58,8 +58,9 @@ double choose_voxel_size(const ParticleSet& particles)
     const double volume =
         std::max(extent.x, least) * std::max(extent.y, least) * std::max(extent.z, least);
     const double size = std::cbrt(8.0 * volume / static_cast<double>(particles.size()));
+    constexpr double finest = 1e-4;  // OpenVDB takes voxels below 2e-5 for singular
     const Vec3 farthest = glm::max(glm::abs(bounds.lo), glm::abs(bounds.hi));
-    return std::max({size, 1e-6 * double{max_component(farthest)}, 1e-9});
+    return std::max({size, 1e-6 * double{max_component(farthest)}, finest});
 }
 
 template <class T>

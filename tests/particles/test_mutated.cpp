@@ -1,0 +1,126 @@
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include <sys/resource.h>
+
+#include <gtest/gtest.h>
+
+#include "core/rng.h"
+#include "particles/cache.h"
+#include "particles/cache_samples.h"
+#include "particles/emitter.h"
+#include "particles/write_points.h"
+#include "support/temp_folder.h"
+
+// Damaged files end in particles or in one Error that names the file; nothing crashes, hangs (the
+// test's own time limit) or asks for memory out of proportion to the file.
+namespace mote {
+namespace {
+
+/// Damage number `trial`: a truncation, an extreme integer, or random bytes.
+std::string damage(std::string bytes, uint32_t trial)
+{
+    Rng rng(trial, 0, Stream::Test, 0, 0);
+    const auto somewhere = [&](size_t room) {
+        return static_cast<size_t>(rng.uniform() * static_cast<float>(room));
+    };
+    const uint32_t kind = rng.next() % 4;
+    if (kind == 0) bytes.resize(somewhere(bytes.size()));
+    const size_t head = std::min<size_t>(bytes.size(), 4096);
+    if (kind == 1 && head > 8) {
+        static constexpr uint32_t extremes[] = {0xffffffffu, 0x7fffffffu, 0x80000000u, 0u,
+                                                1u << 20u};
+        const uint32_t value = extremes[rng.next() % 5];
+        std::memcpy(&bytes[somewhere(head - 4)], &value, 4);
+    }
+    const int flips = kind == 2 ? 3 : kind == 3 ? 20 : 0;
+    for (int i = 0; i < flips && !bytes.empty(); ++i) {
+        bytes[somewhere(kind == 2 ? head : bytes.size())] = static_cast<char>(rng.next());
+    }
+    return bytes;
+}
+
+struct Outcome {
+    int read = 0;
+    int refused = 0;
+};
+
+Outcome read_damaged(const std::string& name, const std::string& whole, uint32_t trials)
+{
+    const TempFolder folder;
+    Outcome outcome;
+    for (uint32_t trial = 0; trial < trials; ++trial) {
+        const std::string path = folder.write(name, damage(whole, trial));
+        try {
+            const ParticleSet set = read_particle_file(path, {}, 24.0);
+            ++outcome.read;
+            EXPECT_LE(set.size(), 4096 + 8 * whole.size());
+            for (size_t i = 0; i < set.size(); ++i) {
+                EXPECT_TRUE(is_finite(set.position[i]) && set.radius[i] > 0.0f);
+            }
+        } catch (const Error& e) {
+            ++outcome.refused;
+            EXPECT_TRUE(std::string_view(e.what()).starts_with(path)) << e.what();
+            EXPECT_EQ(std::string_view(e.what()).find('\n'), std::string_view::npos);
+        }
+    }
+    return outcome;
+}
+
+long peak_kilobytes()
+{
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return usage.ru_maxrss;
+}
+
+std::string points_file(const ParticleSet& set)
+{
+    const TempFolder folder;
+    write_points(folder.file("p.vdb"), set);
+    std::ifstream in(folder.file("p.vdb"), std::ios::binary);
+    std::stringstream bytes;
+    bytes << in.rdbuf();
+    return bytes.str();
+}
+
+ParticleSet many_particles()
+{
+    EmitterParams params;
+    params.count = 200;
+    return emit_particles(params, 5.0);
+}
+
+TEST(Mutated, TextAndBinaryFiles)
+{
+    const long before = peak_kilobytes();
+    const std::pair<const char*, std::string> files[] = {
+        {"a.ply", sample_ply(SamplePly::Ascii)},
+        {"l.ply", sample_ply(SamplePly::Little)},
+        {"b.ply", sample_ply(SamplePly::Big)},
+        {"c.csv", sample_csv()},
+        {"l.npy", sample_npy(false)},
+        {"b.npy", sample_npy(true)},
+    };
+    for (const auto& [name, whole] : files) {
+        const Outcome outcome = read_damaged(name, whole, 150);
+        EXPECT_GT(outcome.read, 0) << name;      // some damage only changes numbers
+        EXPECT_GT(outcome.refused, 30) << name;  // most of it is noticed
+    }
+    EXPECT_LT(peak_kilobytes() - before, 100'000);
+}
+
+TEST(Mutated, VdbPoints)
+{
+    const std::string whole = points_file(many_particles());
+    const long before = peak_kilobytes();
+    const uint32_t trials = std::getenv("MOTE_LONG_TESTS") ? 2000 : 150;
+    const Outcome outcome = read_damaged("p.vdb", whole, trials);
+    EXPECT_GT(outcome.read, 0);
+    EXPECT_GT(outcome.refused, 30);
+    EXPECT_LT(peak_kilobytes() - before, 100'000);
+}
+
+}  // namespace
+}  // namespace mote
