@@ -16,8 +16,11 @@ struct Phase {
 /// Source: Henyey and Greenstein 1941.
 [[nodiscard]] inline float eval_hg(float cos_theta, float g)
 {
-    const float denom = std::max(1.0f + g * g - 2.0f * g * cos_theta, sqr(1.0f - std::abs(g)));
-    return inv_4pi * (1.0f - g * g) / (denom * std::sqrt(denom));
+    // 1 + g^2 - 2 g cos, without the cancellation that would flatten narrow peaks.
+    const float a = std::abs(g);
+    const float off_axis = std::max(0.0f, 1.0f - std::copysign(1.0f, g) * cos_theta);
+    const float denom = sqr(1.0f - a) + 2.0f * a * off_axis;
+    return inv_4pi * (1.0f - a) * (1.0f + a) / (denom * std::sqrt(denom));
 }
 
 /// Phase function [1/sr] for light arriving from wi and leaving to wo, both away from the vertex.
@@ -45,12 +48,12 @@ struct Phase {
         u.x = second ? u.x / phase.weight_b : (u.x - phase.weight_b) / (1.0f - phase.weight_b);
         u.x = std::min(u.x, one_minus_epsilon);
     }
-    float cos_theta = 1.0f - 2.0f * u.x;
-    if (std::abs(g) > 1e-3f) {
-        const float s = (1.0f - g * g) / (1.0f - g + 2.0f * g * u.x);
-        cos_theta = std::clamp((1.0f + g * g - s * s) / (2.0f * g), -1.0f, 1.0f);
-    }
-    const float sin_theta = std::sqrt(std::max(0.0f, 1.0f - cos_theta * cos_theta));
+    // Inverse of the distribution function, as 1 - cos: exact for any g, 0 included.
+    const float w = 1.0f - g + 2.0f * g * u.x;
+    const float off_axis =
+        std::min(2.0f, (1.0f - g) * (1.0f - u.x) / w * ((1.0f - g * g) / w + 1.0f - g));
+    const float cos_theta = 1.0f - off_axis;
+    const float sin_theta = std::sqrt(off_axis * (2.0f - off_axis));
     const float phi = 2.0f * pi * u.y;
     return make_frame(-wo) * Vec3(sin_theta * std::cos(phi), sin_theta * std::sin(phi), cos_theta);
 }
