@@ -5,13 +5,21 @@
 namespace mote {
 namespace {
 
-constexpr int furthest = 32;
+constexpr int furthest = 16;
 
 /// One axis of the chessboard distance transform: out[i] = min over j of max(|i-j|, in[j]).
 /// Values reach at most `furthest`, so each entry looks at a bounded neighbourhood; the search
 /// stops as soon as no further neighbour can be nearer.
 void sweep_line(const int32_t* in, int32_t* out, size_t stride, int count)
 {
+    int32_t nearest = furthest;
+    for (int i = 0; i < count; ++i) {
+        nearest = std::min(nearest, in[static_cast<size_t>(i) * stride]);
+    }
+    if (nearest == furthest) {  // most lines of a large sparse table
+        for (int i = 0; i < count; ++i) out[static_cast<size_t>(i) * stride] = furthest;
+        return;
+    }
     for (int i = 0; i < count; ++i) {
         int32_t best = std::min(in[static_cast<size_t>(i) * stride], furthest);
         for (int d = 1; d < best; ++d) {

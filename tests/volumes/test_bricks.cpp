@@ -116,7 +116,7 @@ TEST(Bricks, SkipDistancesAreExact)
     ASSERT_FALSE(filled.empty());
     each([&](Vec3i p, int32_t entry) {
         if (entry > 0) return;
-        int nearest = 32;
+        int nearest = 16;  // the longest that is stored
         for (const Vec3i& q : filled) {
             const Vec3i d = glm::abs(p - q);
             nearest = std::min(nearest, std::max(d.x, std::max(d.y, d.z)));
