@@ -1,0 +1,124 @@
+#include "render/frame.h"
+
+#include <atomic>
+#include <chrono>
+#include <ctime>
+
+#include "core/parallel.h"
+#include "reference/path_tracer.h"
+#include "render/film.h"
+#include "render/metadata.h"
+#include "render/motion.h"
+
+namespace mote {
+namespace {
+
+/// What every sample of the frame needs.
+struct FrameInputs {
+    const Scene& scene;
+    const RenderDescription& render;
+    AovSet aovs;
+    LightSampler lights;
+};
+
+double process_cpu_seconds()
+{
+    timespec t{};
+    ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// Distance along the ray -> depth along the camera's view axis.
+float view_depth(const Camera& camera, const Ray& ray, float distance)
+{
+    const Quatd rotation = camera.world_from_camera.at(ray.time).rotate;
+    const Vec3d forward = rotation * Vec3d(0.0, 0.0, -1.0);
+    return distance * static_cast<float>(glm::dot(forward, Vec3d(ray.d)));
+}
+
+FilmSample trace_sample(const FrameInputs& frame, int x, int y, uint32_t sample, bool& truncated)
+{
+    const Scene& scene = frame.scene;
+    const auto frame_number = static_cast<uint32_t>(scene.frame);
+    const auto pixel = static_cast<uint32_t>(y * scene.camera.width + x);
+    Rng camera_rng(frame.render.seed, frame_number, Stream::Camera, pixel, sample);
+    const Vec2 film = Vec2(x, y) + camera_rng.uniform2();
+    const Vec2 lens = camera_rng.uniform2();
+    const Ray ray = generate_ray(scene.camera, film, lens, camera_rng.uniform());
+
+    Rng path_rng(frame.render.seed, frame_number, Stream::Path, pixel, sample);
+    const PathResult path = trace_path(scene, frame.lights, frame.render.path, ray, path_rng);
+    truncated = path.truncated;
+    FilmSample out;
+    out.direct = path.direct;
+    out.indirect = path.indirect;
+    out.emission = path.emission;
+    out.background = path.background;
+    out.transmittance = path.transmittance;
+    out.collided = path.depth < infinity;
+    out.albedo = path.albedo;
+    const AovSet& aovs = frame.aovs;
+    const bool needs_depth = aovs.has(Aov::Z) || aovs.has(Aov::VolumeZ);
+    if (out.collided) {
+        out.depth = needs_depth ? view_depth(scene.camera, ray, path.depth) : path.depth;
+    }
+    if (aovs.needs_motion()) out.motion = film_motion(scene, ray, path.depth);
+    if (aovs.has(Aov::Transmittance) || aovs.has(Aov::OpticalDepth)) {
+        out.optical_depth = optical_depth(scene.media, ray, {0.0f, infinity});
+    }
+    return out;
+}
+
+}  // namespace
+
+LayeredImage render_frame(const Scene& scene, const RenderDescription& render,
+                          const OutputDescription& output, StopRequested stop, FrameStats& stats)
+{
+    const auto start = std::chrono::steady_clock::now();
+    const double cpu_start = process_cpu_seconds();
+    const AovSet aovs = parse_aovs(output.aovs);
+    const FrameInputs frame{scene, render, aovs, build_light_sampler(scene, render.path)};
+    const Camera& camera = scene.camera;
+    Film film(camera.width, camera.height, aovs, output.color_type);
+    std::atomic<bool> stopped{false};
+    std::atomic<int64_t> dropped{0};
+    std::atomic<int64_t> truncated_paths{0};
+
+    for_each_tile(camera.width, camera.height, [&](const Tile& tile) {
+        if (stop && stop()) stopped = true;
+        if (stopped) return;
+        int64_t tile_dropped = 0;
+        int64_t tile_truncated = 0;
+        for (int y = tile.y0; y < tile.y1; ++y) {
+            for (int x = tile.x0; x < tile.x1; ++x) {
+                PixelFilm pixel;
+                for (int i = 0; i < render.samples; ++i) {
+                    bool truncated = false;
+                    const FilmSample sample =
+                        trace_sample(frame, x, y, static_cast<uint32_t>(i), truncated);
+                    tile_dropped += pixel.add(sample) ? 0 : 1;
+                    tile_truncated += truncated ? 1 : 0;
+                }
+                film.store(x, y, pixel);
+            }
+        }
+        dropped += tile_dropped;
+        truncated_paths += tile_truncated;
+    });
+
+    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+    stats.render_seconds = wall.count();
+    stats.render_cpu_seconds = process_cpu_seconds() - cpu_start;
+    stats.dropped_non_finite = dropped;
+    stats.truncated_paths = truncated_paths;
+    stats.paths = int64_t{render.samples} * camera.width * camera.height;
+    if (stopped) {
+        stats.paths = 0;
+        return {};
+    }
+    LayeredImage image = film.take();
+    image.attributes = camera_attributes(camera);
+    return image;
+}
+
+}  // namespace mote
