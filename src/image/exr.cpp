@@ -99,8 +99,8 @@ void insert_attribute(Imf::Header& header, const Attribute& attribute)
     } else if (const auto* real = std::get_if<float>(&attribute.value)) {
         header.insert(name, Imf::FloatAttribute(*real));
     } else if (const auto* rational = std::get_if<Attribute::Rational>(&attribute.value)) {
-        header.insert(name, Imf::RationalAttribute(
-                                Imf::Rational(rational->numerator, rational->denominator)));
+        header.insert(name, Imf::RationalAttribute(Imf::Rational(
+                                rational->numerator, static_cast<int>(rational->denominator))));
     } else {
         insert_vector(header, name, std::get<std::vector<float>>(attribute.value));
     }
