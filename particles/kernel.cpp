@@ -16,24 +16,6 @@ struct Range {
     int hi;
 };
 
-/// Supports of at most eight voxels: every row is one vector.
-double sum_short_rows(Vec3 p, float support)
-{
-    const Range x(p.x, support);
-    const Range y(p.y, support);
-    const float z0 = std::ceil(p.z - support);
-    const KernelRows rows = make_kernel_rows(z0, p.z, support, 1.0f);
-    Float8 sum = {};
-    for (int i = x.lo; i <= x.hi; ++i) {
-        const float dx2 = sqr(static_cast<float>(i) - p.x);
-        for (int j = y.lo; j <= y.hi; ++j) {
-            sum += eval_row(rows, dx2 + sqr(static_cast<float>(j) - p.y));
-        }
-    }
-    return static_cast<double>(((sum[0] + sum[4]) + (sum[1] + sum[5])) +
-                               ((sum[2] + sum[6]) + (sum[3] + sum[7])));
-}
-
 /// Sum over one row of (a - dz^2/h^2)^2, in closed form: the n lattice points are centred at
 /// `d` from the particle, and power sums of centred half-integers are polynomials in n.
 double sum_row(double a, double n, double d, double inv_h2)
@@ -46,7 +28,9 @@ double sum_row(double a, double n, double d, double inv_h2)
     return n * a * a + inv_h2 * (inv_h2 * moment4 - 2.0 * a * moment2);
 }
 
-double sum_long_rows(Vec3 p, float support)
+}  // namespace
+
+double kernel_lattice_sum(Vec3 p, float support)
 {
     const Range x(p.x, support);
     const Range y(p.y, support);
@@ -69,11 +53,38 @@ double sum_long_rows(Vec3 p, float support)
     return sum;
 }
 
-}  // namespace
-
-double kernel_lattice_sum(Vec3 p, float support)
+void kernel_lattice_sums(const KernelCentres& centres, float* sums)
 {
-    return support <= 3.5f ? sum_short_rows(p, support) : sum_long_rows(p, support);
+    constexpr float widest_direct = 4.0f;
+    const float widest = *std::max_element(centres.support, centres.support + 8);
+    if (widest > widest_direct) {
+        for (int i = 0; i < 8; ++i) {
+            const Vec3 p(centres.x[i], centres.y[i], centres.z[i]);
+            sums[i] = static_cast<float>(kernel_lattice_sum(p, centres.support[i]));
+        }
+        return;
+    }
+    // Lattice points 1 - reach to reach can lie within a support of `reach` of [0,1).
+    const int reach = static_cast<int>(std::ceil(widest));
+    const Float8 support = load8(centres.support);
+    const Float8 inv_h2 = 1.0f / (support * support);
+    const auto falloff = [&](int i, const float* centre) {
+        const Float8 d = static_cast<float>(i) - load8(centre);
+        return d * d * inv_h2;
+    };
+    Float8 along_z[2 * static_cast<int>(widest_direct)];
+    for (int k = 0; k < 2 * reach; ++k) along_z[k] = falloff(k + 1 - reach, centres.z);
+    Float8 sum = {};
+    for (int i = 1 - reach; i <= reach; ++i) {
+        const Float8 a = 1.0f - falloff(i, centres.x);
+        for (int j = 1 - reach; j <= reach; ++j) {
+            const Float8 b = a - falloff(j, centres.y);
+            Float8 row = {};
+            for (int k = 0; k < 2 * reach; ++k) row += square_if_positive(b - along_z[k]);
+            sum += row;
+        }
+    }
+    store8(sums, sum);
 }
 
 }  // namespace mote

@@ -9,38 +9,54 @@ namespace mote {
 /// Eight floats, one AVX register.
 using Float8 = float __attribute__((vector_size(32)));
 
-/// Adds to eight consecutive floats.
-inline void add_to(float* sums, Float8 v)
+[[nodiscard]] inline Float8 load8(const float* from)
 {
-    Float8 sum;
-    std::memcpy(&sum, sums, sizeof sum);
-    sum += v;
-    std::memcpy(sums, &sum, sizeof sum);
+    Float8 v;
+    std::memcpy(&v, from, sizeof v);
+    return v;
 }
 
-/// The root of a scaled kernel, s (1 - r^2/h^2), on rows of eight lattice points along z: its
-/// square is the kernel times s^2.
-struct KernelRows {
-    Float8 along_z;  ///< s (1 - dz^2/h^2)
-    float falloff;   ///< s / h^2
-};
-
-/// Rows that start at z = z0, for a kernel centred at z with scale s.
-[[nodiscard]] inline KernelRows make_kernel_rows(float z0, float z, float support, float s)
+inline void store8(float* to, Float8 v)
 {
-    constexpr Float8 lanes = {0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f};
-    const float falloff = s / (support * support);
-    const Float8 dz = lanes - (z - z0);
-    return {s - dz * dz * falloff, falloff};
+    std::memcpy(to, &v, sizeof v);
 }
 
-/// Kernel values of the row at squared distance `d2` from the axis through the centre.
-[[nodiscard]] inline Float8 eval_row(const KernelRows& rows, float d2)
+/// Square of v where it is positive, 0 elsewhere.
+[[nodiscard]] inline Float8 square_if_positive(Float8 v)
 {
     constexpr Float8 zero = {};
-    const Float8 root = rows.along_z - d2 * rows.falloff;
-    const Float8 inside = root > zero ? root : zero;
+    const Float8 inside = v > zero ? v : zero;
     return inside * inside;
+}
+
+/// The root of a scaled kernel, s (1 - r^2/h^2), on an 8^3 block of lattice points: its square is
+/// the kernel times s^2. Separable before squaring, s - x^2 - y^2 - z^2 with scaled distances.
+struct KernelBlock {
+    Float8 along_z;                  ///< s minus the scaled squared distance along z
+    alignas(32) float across[2][8];  ///< scaled squared distances along x and y
+};
+
+/// Block with lattice points 0 to 7 along each axis, for a kernel centred at (x, y, z), scale s.
+[[nodiscard]] inline KernelBlock make_kernel_block(float x, float y, float z, float support,
+                                                   float s)
+{
+    constexpr Float8 lattice = {0.0f, 1.0f, 2.0f, 3.0f, 4.0f, 5.0f, 6.0f, 7.0f};
+    const float falloff = s / (support * support);
+    const auto distance2 = [&](float c) {
+        const Float8 d = lattice - c;
+        return d * d * falloff;
+    };
+    KernelBlock block;
+    block.along_z = s - distance2(z);
+    store8(block.across[0], distance2(x));
+    store8(block.across[1], distance2(y));
+    return block;
+}
+
+/// Kernel values of the row at (x, y).
+[[nodiscard]] inline Float8 eval_row(const KernelBlock& block, size_t x, size_t y)
+{
+    return square_if_positive(block.along_z - block.across[0][x] - block.across[1][y]);
 }
 
 }  // namespace mote

@@ -120,10 +120,10 @@ void add_fields(const std::array<float, leaf_voxels>* sums, Vec3Leaf& leaf)
 }
 
 template <int Channels>
-void add_splats(std::span<const TileSplat> splats, const ChannelList& channels, LeafSet& leaves)
+void add_splats(const LeafLists& lists, int leaf, const ChannelList& channels, LeafSet& leaves)
 {
     LeafSums<Channels> sums;
-    accumulate_leaf<Channels>(splats, channels.components.data(), sums);
+    accumulate_leaf<Channels>(lists, leaf, channels.components.data(), sums);
     const auto* field = sums.field.data();
     add_field(*field++, *leaves.density);
     if constexpr (Channels > 0) {
@@ -136,45 +136,45 @@ void add_splats(std::span<const TileSplat> splats, const ChannelList& channels, 
     }
 }
 
-void add_splats(std::span<const TileSplat> splats, const ChannelList& channels, LeafSet& leaves)
+void add_splats(const LeafLists& lists, int leaf, const ChannelList& channels, LeafSet& leaves)
 {
     switch (channels.components.size()) {
         case 0:
-            return add_splats<0>(splats, channels, leaves);
+            return add_splats<0>(lists, leaf, channels, leaves);
         case 1:
-            return add_splats<1>(splats, channels, leaves);
+            return add_splats<1>(lists, leaf, channels, leaves);
         case 3:
-            return add_splats<3>(splats, channels, leaves);
+            return add_splats<3>(lists, leaf, channels, leaves);
         case 4:
-            return add_splats<4>(splats, channels, leaves);
+            return add_splats<4>(lists, leaf, channels, leaves);
         case 6:
-            return add_splats<6>(splats, channels, leaves);
+            return add_splats<6>(lists, leaf, channels, leaves);
         default:
-            return add_splats<7>(splats, channels, leaves);
+            return add_splats<7>(lists, leaf, channels, leaves);
     }
 }
 
 /// Adds this wave's splats of one tile to its leaves.
-void rasterize_tile(GridTile& tile, const ChannelList& channels)
+void rasterize_tile(GridTile& tile, const ChannelList& channels, LeafListsPool& pool)
 {
-    constexpr size_t max_copies = 1'000'000;  // 24 MB
     allocate_leaves(tile, channels);
     std::vector<int> number;  // of each entry of tile.leaves
     number.reserve(tile.leaves.size());
     for (int k = 0; k < tile_leaves; ++k) {
         if (has_leaf(tile.allocated, k)) number.push_back(k);
     }
-    LeafLists lists;
+    std::unique_ptr<LeafLists> lists = pool.take();
     size_t segment = 0;
     size_t offset = 0;
-    while (next_leaf_lists(tile.segments, max_copies, segment, offset, lists)) {
+    while (lists->fill(tile.segments, segment, offset)) {
         parallel_for(number.size(), 16, [&](size_t begin, size_t end) {
             for (size_t i = begin; i < end; ++i) {
-                const auto splats = lists.of_leaf(number[i]);
-                if (!splats.empty()) add_splats(splats, channels, tile.leaves[i]);
+                if (lists->count(number[i]) == 0) continue;
+                add_splats(*lists, number[i], channels, tile.leaves[i]);
             }
         });
     }
+    pool.give_back(std::move(lists));
 }
 
 template <class Leaf>
@@ -272,20 +272,22 @@ TileMap fill_tiles(const ParticleSet& particles, const RasterPlan& plan,
                    const RasterizeParams& params, const ChannelList& channels)
 {
     TileMap map;
+    LeafListsPool pool;
     size_t first = 0;
     for (const size_t end : plan.wave_end) {
         std::vector<BinnedChunk> binned(end - first);
         parallel_for(binned.size(), 1, [&](size_t begin, size_t stop) {
             for (size_t c = begin; c < stop; ++c) {
                 const ChunkRange& range = plan.chunks[first + c];
-                binned[c] = bin_chunk(particles, plan.rules, range.first, range.last);
+                binned[c] =
+                    bin_chunk(particles, plan.rules, range.first, range.last, range.all_usable);
             }
         });
         for (const BinnedChunk& chunk : binned) map.add(chunk);
         check_budget(map, params);
         parallel_for(map.tiles.size(), 1, [&](size_t begin, size_t stop) {
             for (size_t t = begin; t < stop; ++t) {
-                rasterize_tile(map.tiles[t], channels);
+                rasterize_tile(map.tiles[t], channels, pool);
                 map.tiles[t].segments.clear();
             }
         });

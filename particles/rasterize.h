@@ -3,23 +3,9 @@
 #include <openvdb/openvdb.h>
 
 #include "particles/particle_set.h"
+#include "particles/rasterize_params.h"
 
 namespace mote {
-
-/// Grids to build: only those that the scene uses.
-struct RasterChannels {
-    bool velocity = false;
-    bool temperature = false;
-    bool color = false;
-};
-
-struct RasterizeParams {
-    float voxel_size = 0.02f;      ///< edge of a voxel [m]
-    float shutter_open_s = 0.0f;   ///< blur along the velocity from here ... [s, relative to frame]
-    float shutter_close_s = 0.0f;  ///< ... to here; equal means no blur
-    int64_t max_voxels = 2'000'000'000;  ///< refuse larger results, Error(Memory)
-    RasterChannels channels;
-};
 
 /// Particle grids of one frame, fog volumes named as in the file formats of other tools.
 struct ParticleGrids {
@@ -29,10 +15,16 @@ struct ParticleGrids {
     openvdb::Vec3SGrid::Ptr color;        ///< "Cd", mass-weighted mean; or null
 };
 
-/// Splats particles with a normalised smooth kernel whose support is the particle's radius.
+/// Splats particles with the kernel (1 - r^2/h^2)^2, normalised per particle on the lattice, whose
+/// support h is the particle's radius (one voxel at least, see kernel.h). Voxel values sit at whole
+/// index coordinates, index = world / voxel_size; voxels with density > 0 are active.
 /// Mass-conserving: the sum of density times voxel volume is the mass of the particles, to 1e-5.
 /// Lock-free per leaf and bit-identical for any thread count: every leaf sums its particles in
-/// particle order. Throws Error(Memory) before allocating more than params.max_voxels.
+/// particle order. Particles with no mass or with non-finite values are left out, with a count in
+/// the log. Without radii, supports are one voxel; without masses, all particles share 1 kg.
+/// Motion blur spreads a particle's mass over stamps half a support apart, at most 256.
+/// Throws Error(Memory) before allocating grids of more than params.max_voxels, and for radii over
+/// 256 voxels; Error(Input) for positions outside the 32-bit index range.
 [[nodiscard]] ParticleGrids rasterize(const ParticleSet& particles, const RasterizeParams& params);
 
 }  // namespace mote

@@ -4,7 +4,7 @@
 #include <span>
 
 #include "particles/kernel_rows.h"
-#include "particles/rasterize_tiles.h"
+#include "particles/rasterize_lists.h"
 
 namespace mote {
 
@@ -28,54 +28,57 @@ template <int Channels>
 void accumulate_splats(std::span<const TileSplat> splats, const AttributeComponent* channels,
                        LeafSums<Channels>& sums)
 {
-    const auto first = [](float v) { return std::max(0, static_cast<int>(std::ceil(v))); };
-    const auto last = [](float v) {
-        return std::min(leaf_size - 1, static_cast<int>(std::floor(v)));
+    const auto first = [](float v) {
+        return static_cast<size_t>(std::max(0, static_cast<int>(std::ceil(v))));
+    };
+    const auto end = [](float v) {
+        return static_cast<size_t>(std::min(leaf_size, static_cast<int>(std::floor(v)) + 1));
     };
     for (const TileSplat& s : splats) {
-        const KernelRows rows = make_kernel_rows(0.0f, s.z, s.support, s.root_density);
+        const KernelBlock kernel = make_kernel_block(s.x, s.y, s.z, s.support, s.root_density);
         [[maybe_unused]] std::array<float, static_cast<size_t>(std::max(Channels, 1))> value;
-        for (int c = 0; c < Channels; ++c) {
-            value[static_cast<size_t>(c)] = channels[c].data[s.particle * channels[c].stride];
+        for (size_t c = 0; c < Channels; ++c) {
+            value[c] = channels[c].data[s.particle * channels[c].stride];
         }
-        const int x1 = last(s.x + s.support);
-        const int y1 = last(s.y + s.support);
-        for (int x = first(s.x - s.support); x <= x1; ++x) {
-            const float dx2 = sqr(static_cast<float>(x) - s.x);
-            for (int y = first(s.y - s.support); y <= y1; ++y) {
-                const Float8 w = eval_row(rows, dx2 + sqr(static_cast<float>(y) - s.y));
-                const size_t row = static_cast<size_t>(leaf_size * (leaf_size * x + y));
+        const size_t x_end = end(s.x + s.support);
+        const size_t y_begin = first(s.y - s.support);
+        const size_t y_end = end(s.y + s.support);
+        for (size_t x = first(s.x - s.support); x < x_end; ++x) {
+            for (size_t y = y_begin; y < y_end; ++y) {
+                const Float8 w = eval_row(kernel, x, y);
+                const size_t row = leaf_size * (leaf_size * x + y);
                 for (size_t c = 0; c <= Channels; ++c) {
-                    add_to(&sums.field[c][row], c == 0 ? w : w * value[c - 1]);
+                    float* const sum = &sums.field[c][row];
+                    store8(sum, load8(sum) + (c == 0 ? w : w * value[c - 1]));
                 }
             }
         }
     }
 }
 
-/// Sums of any number of splats. Long lists are summed in float by blocks of 64 and the blocks in
-/// double: a plain float sum of a million equal splats drifts by percents.
+/// Sums of one leaf's list. Long lists are summed in float by blocks and the blocks in double: a
+/// plain float sum of a million equal splats drifts by percents.
 template <int Channels>
-void accumulate_leaf(std::span<const TileSplat> splats, const AttributeComponent* channels,
+void accumulate_leaf(const LeafLists& lists, int leaf, const AttributeComponent* channels,
                      LeafSums<Channels>& sums)
 {
-    constexpr size_t block = 64;
     sums = {};
-    if (splats.size() <= block) {
-        accumulate_splats<Channels>(splats, channels, sums);
+    if (lists.count(leaf) <= LeafLists::block_size) {
+        lists.for_each_block(leaf, [&](std::span<const TileSplat> splats) {
+            accumulate_splats<Channels>(splats, channels, sums);
+        });
         return;
     }
     std::array<std::array<double, leaf_voxels>, Channels + 1> total{};
-    for (size_t i = 0; i < splats.size(); i += block) {
-        accumulate_splats<Channels>(splats.subspan(i, std::min(block, splats.size() - i)), channels,
-                                    sums);
+    lists.for_each_block(leaf, [&](std::span<const TileSplat> splats) {
+        accumulate_splats<Channels>(splats, channels, sums);
         for (size_t c = 0; c <= Channels; ++c) {
             for (size_t v = 0; v < leaf_voxels; ++v) {
                 total[c][v] += static_cast<double>(sums.field[c][v]);
                 sums.field[c][v] = 0.0f;
             }
         }
-    }
+    });
     for (size_t c = 0; c <= Channels; ++c) {
         for (size_t v = 0; v < leaf_voxels; ++v) {
             sums.field[c][v] = static_cast<float>(total[c][v]);

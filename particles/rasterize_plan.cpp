@@ -33,6 +33,12 @@ bool is_in_range(const ParticleSet& particles, const SplatRules& rules, size_t i
     return farthest * rules.index_from_world <= largest_index;
 }
 
+double expected_tiles(float support)
+{
+    const double along_axis = 2.0 * static_cast<double>(support) / tile_size + 1.0;
+    return along_axis * along_axis * along_axis;
+}
+
 BlockReport inspect(const ParticleSet& particles, const SplatRules& rules, size_t first,
                     size_t last)
 {
@@ -47,8 +53,7 @@ BlockReport inspect(const ParticleSet& particles, const SplatRules& rules, size_
             report.bad = i;
             break;
         }
-        const double tiles = 2.0 * static_cast<double>(support) / tile_size + 1.0;
-        report.splats += tiles * tiles * tiles * stamp_count(particles, rules, i, support);
+        report.splats += expected_tiles(support) * stamp_count(particles, rules, i, support);
     }
     return report;
 }
@@ -142,7 +147,7 @@ RasterPlan make_raster_plan(const ParticleSet& particles, const RasterizeParams&
         const size_t step =
             (last - first + static_cast<size_t>(parts) - 1) / static_cast<size_t>(parts);
         for (size_t i = first; i < last; i += step) {
-            plan.chunks.push_back({i, std::min(last, i + step)});
+            plan.chunks.push_back({i, std::min(last, i + step), blocks[b].unusable == 0});
             in_wave += blocks[b].splats / parts;
             if (in_wave < splats_per_wave) continue;
             plan.wave_end.push_back(plan.chunks.size());

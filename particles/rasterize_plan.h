@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "particles/rasterize.h"
+#include "particles/rasterize_params.h"
 #include "particles/rasterize_splats.h"
 
 namespace mote {
@@ -11,6 +11,7 @@ namespace mote {
 struct ChunkRange {
     size_t first;
     size_t last;
+    bool all_usable;  ///< see is_usable
 };
 
 /// Particles cut into chunks, and chunks into waves that bound the memory of binned splats. Both

@@ -15,6 +15,7 @@ inline constexpr int max_stamps = 256;
 /// Positions are rounded to 2^-17 voxel, so that every float copy of one, relative to any tile or
 /// leaf near it, is exact and the lattice sum that normalises it holds for all of them.
 inline constexpr double positions_per_voxel = 131072.0;
+inline constexpr int tile_size = 64;  ///< voxels per edge of a tile: 8^3 leaves
 
 /// How particles become splats in index space.
 struct SplatRules {
@@ -30,12 +31,36 @@ struct SplatRules {
     [[nodiscard]] bool blurs() const { return close_s != open_s; }
 };
 
-/// One kernel footprint: density (root_density (1 - r^2/support^2))^2 [kg/m^3].
-struct Splat {
-    Vec3d p_index;
-    float support;       ///< [voxels], min_support_voxels or more
-    float root_density;  ///< square root of the density at the centre
+/// Up to eight kernel footprints, components apart: densities (root_density (1 - r^2/h^2))^2
+/// [kg/m^3] around cell + centre [voxels]. Filled in two steps: `add`, then `normalise`.
+struct SplatBatch {
+    static constexpr int capacity = 8;
+
+    int count = 0;
+    double p_index[3][capacity]{};
+    float density[capacity]{};  ///< mass over voxel volume [kg/m^3]
+    uint32_t particle[capacity]{};
+    KernelCentres centres{{}, {}, {}, {1, 1, 1, 1, 1, 1, 1, 1}};
+
+    // Set by normalise.
+    int32_t cell[3][capacity];
+    int32_t first_tile[3][capacity];  ///< tiles that the support meets, both ends included
+    int32_t last_tile[3][capacity];
+    float root_density[capacity];
+
+    void add(Vec3d p, float support, float splat_density, size_t index)
+    {
+        p_index[0][count] = p.x;
+        p_index[1][count] = p.y;
+        p_index[2][count] = p.z;
+        density[count] = splat_density;
+        particle[count] = static_cast<uint32_t>(index);
+        centres.support[count++] = support;
+    }
 };
+
+/// Rounds positions, splits them into cell and centre, and divides densities by lattice sums.
+void normalise(SplatBatch& batch);
 
 /// False for particles that cannot or need not contribute: massless, or with a value that is not
 /// finite or so large that sums of it could overflow.
@@ -67,28 +92,37 @@ struct Splat {
     return particles.mass.empty() ? rules.missing_mass : particles.mass[i];
 }
 
-/// Calls f(splat) for each stamp of particle i, which must be usable and in range. Stamps sit at
-/// the middles of equal parts of the shutter, so their centroid is the path's.
+/// Calls f(batch) for the splats of particles [first, last) in order; all must be in range, and
+/// those that are not usable are left out. Stamps sit at the middles of equal parts of the
+/// shutter, so their centroid is the path's.
 template <class F>
-void for_each_splat(const ParticleSet& particles, const SplatRules& rules, size_t i, F&& f)
+void for_each_batch(const ParticleSet& particles, const SplatRules& rules, size_t first,
+                    size_t last, bool all_usable, F&& f)
 {
-    const float support = support_of(particles, rules, i);
-    const int count = stamp_count(particles, rules, i, support);
-    const double density =
-        static_cast<double>(mass_of(particles, rules, i)) * rules.inv_voxel_volume / count;
-    for (int k = 0; k < count; ++k) {
-        Vec3d p(particles.position[i]);
-        if (rules.blurs() && !particles.velocity.empty()) {
-            const double u = (k + 0.5) / count;
-            p += Vec3d(particles.velocity[i]) * (rules.open_s + u * (rules.close_s - rules.open_s));
+    SplatBatch batch;
+    const auto flush = [&] {
+        normalise(batch);
+        f(batch);
+        batch.count = 0;
+    };
+    const bool blurs = rules.blurs() && !particles.velocity.empty();
+    for (size_t i = first; i < last; ++i) {
+        if (!all_usable && !is_usable(particles, rules, i)) continue;
+        const float support = support_of(particles, rules, i);
+        const int stamps = stamp_count(particles, rules, i, support);
+        const float density = static_cast<float>(static_cast<double>(mass_of(particles, rules, i)) *
+                                                 rules.inv_voxel_volume / stamps);
+        for (int k = 0; k < stamps; ++k) {
+            Vec3d p(particles.position[i]);
+            if (blurs) {
+                const double t = rules.open_s + (k + 0.5) / stamps * (rules.close_s - rules.open_s);
+                p += Vec3d(particles.velocity[i]) * t;
+            }
+            batch.add(p * rules.index_from_world, support, density, i);
+            if (batch.count == SplatBatch::capacity) flush();
         }
-        p *= rules.index_from_world * positions_per_voxel;
-        p = Vec3d(std::nearbyint(p.x), std::nearbyint(p.y), std::nearbyint(p.z)) /
-            positions_per_voxel;
-        const Vec3d in_cell(p.x - std::floor(p.x), p.y - std::floor(p.y), p.z - std::floor(p.z));
-        const double sum = kernel_lattice_sum(Vec3(in_cell), support);
-        f(Splat{p, support, static_cast<float>(std::sqrt(density / sum))});
     }
+    if (batch.count > 0) flush();
 }
 
 }  // namespace mote

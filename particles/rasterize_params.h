@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+
+namespace mote {
+
+/// Grids to build: only those that the scene uses.
+struct RasterChannels {
+    bool velocity = false;
+    bool temperature = false;
+    bool color = false;
+};
+
+struct RasterizeParams {
+    float voxel_size = 0.02f;      ///< edge of a voxel [m]
+    float shutter_open_s = 0.0f;   ///< blur along the velocity from here ... [s, relative to frame]
+    float shutter_close_s = 0.0f;  ///< ... to here; equal means no blur
+    int64_t max_voxels = 2'000'000'000;  ///< refuse larger results, Error(Memory)
+    RasterChannels channels;
+};
+
+}  // namespace mote
