@@ -1,6 +1,6 @@
 #include "particles/rasterize.h"
 
-#include <bit>
+#include <atomic>
 
 #include <fmt/core.h>
 #include <spdlog/spdlog.h>
@@ -9,8 +9,6 @@
 #include "core/parallel.h"
 #include "core/text.h"
 #include "particles/rasterize_leaf.h"
-#include "particles/rasterize_plan.h"
-#include "particles/rasterize_tiles.h"
 
 namespace mote {
 namespace {
@@ -26,12 +24,17 @@ struct LeafSet {
     std::unique_ptr<Vec3Leaf> color;
 };
 
-/// One tile of the result. `leaves` has one entry per set bit of `allocated`, in bit order.
+/// Splats of one tile in one chunk.
+struct TilePart {
+    const SplatChains* chunk;
+    size_t bucket;
+};
+
+/// One tile of the result. `leaves` are those touched so far, `numbers` their numbers, ascending.
 struct GridTile {
     TileKey key;
-    LeafMask touched{};
-    LeafMask allocated{};
-    std::vector<std::span<const TileSplat>> segments;  ///< of this wave, in particle order
+    std::vector<size_t> numbers;
+    std::vector<TilePart> parts;  ///< of this wave, in particle order
     std::vector<LeafSet> leaves;
 };
 
@@ -59,20 +62,9 @@ ChannelList make_channels(const ParticleSet& particles, const RasterChannels& wa
     return list;
 }
 
-size_t leaf_count(const LeafMask& mask)
+openvdb::Coord leaf_origin(TileKey key, size_t number)
 {
-    size_t count = 0;
-    for (const uint64_t word : mask) count += static_cast<size_t>(std::popcount(word));
-    return count;
-}
-
-bool has_leaf(const LeafMask& mask, int k)
-{
-    return (mask[static_cast<size_t>(k) / 64] >> (k % 64) & 1u) != 0;
-}
-
-openvdb::Coord leaf_origin(TileKey key, int k)
-{
+    const int k = static_cast<int>(number);
     return {key.x * tile_size + leaf_size * (k / 64), key.y * tile_size + leaf_size * (k / 8 % 8),
             key.z * tile_size + leaf_size * (k % 8)};
 }
@@ -88,21 +80,52 @@ LeafSet make_leaves(const openvdb::Coord& origin, const ChannelList& channels)
     return set;
 }
 
-/// Allocates the leaves that this wave touches first.
-void allocate_leaves(GridTile& tile, const ChannelList& channels)
+/// Counts the voxels of all leaves before they are allocated.
+class VoxelBudget {
+  public:
+    explicit VoxelBudget(const RasterizeParams& params) : params_(params) {}
+
+    void spend(size_t leaves)
+    {
+        const int64_t voxels = static_cast<int64_t>(leaf_voxels * leaves);
+        if (spent_.fetch_add(voxels) + voxels <= params_.max_voxels) return;
+        throw Error(
+            ExitCode::Memory,
+            fmt::format("the particles touch more than {} voxels of {:g} m, the limit ({} for the "
+                        "density alone); raise voxel_size, lower the particles' radius, or raise "
+                        "max_voxels",
+                        params_.max_voxels, params_.voxel_size,
+                        format_bytes(4.0 * static_cast<double>(params_.max_voxels))));
+    }
+
+  private:
+    const RasterizeParams& params_;
+    std::atomic<int64_t> spent_{0};
+};
+
+/// Allocates the leaves that these lists touch first.
+void allocate_leaves(GridTile& tile, const SplatChains& lists, const ChannelList& channels,
+                     VoxelBudget& budget)
 {
-    if (tile.touched == tile.allocated) return;
-    std::vector<LeafSet> leaves;
-    leaves.reserve(leaf_count(tile.touched));
+    std::vector<size_t> numbers;
     size_t old = 0;
-    for (int k = 0; k < tile_leaves; ++k) {
-        if (!has_leaf(tile.touched, k)) continue;
-        const bool exists = has_leaf(tile.allocated, k);
+    for (size_t k = 0; k < tile_leaves; ++k) {
+        const bool exists = old < tile.numbers.size() && tile.numbers[old] == k;
+        if (exists) ++old;
+        if (exists || lists.count(k) > 0) numbers.push_back(k);
+    }
+    if (numbers.size() == tile.numbers.size()) return;
+    budget.spend(numbers.size() - tile.numbers.size());
+    std::vector<LeafSet> leaves;
+    leaves.reserve(numbers.size());
+    old = 0;
+    for (const size_t k : numbers) {
+        const bool exists = old < tile.numbers.size() && tile.numbers[old] == k;
         leaves.push_back(exists ? std::move(tile.leaves[old++])
                                 : make_leaves(leaf_origin(tile.key, k), channels));
     }
+    tile.numbers = std::move(numbers);
     tile.leaves = std::move(leaves);
-    tile.allocated = tile.touched;
 }
 
 void add_field(const std::array<float, leaf_voxels>& sums, FloatLeaf& leaf)
@@ -120,7 +143,7 @@ void add_fields(const std::array<float, leaf_voxels>* sums, Vec3Leaf& leaf)
 }
 
 template <int Channels>
-void add_splats(const LeafLists& lists, int leaf, const ChannelList& channels, LeafSet& leaves)
+void add_splats(const SplatChains& lists, size_t leaf, const ChannelList& channels, LeafSet& leaves)
 {
     LeafSums<Channels> sums;
     accumulate_leaf<Channels>(lists, leaf, channels.components.data(), sums);
@@ -136,7 +159,7 @@ void add_splats(const LeafLists& lists, int leaf, const ChannelList& channels, L
     }
 }
 
-void add_splats(const LeafLists& lists, int leaf, const ChannelList& channels, LeafSet& leaves)
+void add_splats(const SplatChains& lists, size_t leaf, const ChannelList& channels, LeafSet& leaves)
 {
     switch (channels.components.size()) {
         case 0:
@@ -155,22 +178,23 @@ void add_splats(const LeafLists& lists, int leaf, const ChannelList& channels, L
 }
 
 /// Adds this wave's splats of one tile to its leaves.
-void rasterize_tile(GridTile& tile, const ChannelList& channels, LeafListsPool& pool)
+void rasterize_tile(GridTile& tile, const ChannelList& channels, ChainsPool& pool,
+                    VoxelBudget& budget)
 {
-    allocate_leaves(tile, channels);
-    std::vector<int> number;  // of each entry of tile.leaves
-    number.reserve(tile.leaves.size());
-    for (int k = 0; k < tile_leaves; ++k) {
-        if (has_leaf(tile.allocated, k)) number.push_back(k);
+    std::vector<std::span<const TileSplat>> segments;
+    for (const TilePart& part : tile.parts) {
+        part.chunk->for_each_block(part.bucket, [&](auto block) { segments.push_back(block); });
     }
-    std::unique_ptr<LeafLists> lists = pool.take();
+    tile.parts.clear();
+    std::unique_ptr<SplatChains> lists = pool.take();
     size_t segment = 0;
     size_t offset = 0;
-    while (lists->fill(tile.segments, segment, offset)) {
-        parallel_for(number.size(), 16, [&](size_t begin, size_t end) {
+    while (fill_leaf_lists(segments, segment, offset, *lists)) {
+        allocate_leaves(tile, *lists, channels, budget);
+        parallel_for(tile.leaves.size(), 16, [&](size_t begin, size_t end) {
             for (size_t i = begin; i < end; ++i) {
-                if (lists->count(number[i]) == 0) continue;
-                add_splats(*lists, number[i], channels, tile.leaves[i]);
+                if (lists->count(tile.numbers[i]) == 0) continue;
+                add_splats(*lists, tile.numbers[i], channels, tile.leaves[i]);
             }
         });
     }
@@ -240,60 +264,40 @@ typename Grid::Ptr build_grid(const char* name, const RasterizeParams& params,
 struct TileMap {
     TileTable table;
     std::vector<GridTile> tiles;
-    int64_t voxels = 0;  ///< in all leaves touched so far
 
     void add(const BinnedChunk& chunk)
     {
-        for (size_t t = 0; t < chunk.keys.size(); ++t) {
-            const uint32_t number = table.find_or_add(chunk.keys[t]);
-            if (number == tiles.size()) tiles.push_back({chunk.keys[t], {}, {}, {}, {}});
-            GridTile& tile = tiles[number];
-            const size_t before = leaf_count(tile.touched);
-            for (size_t w = 0; w < tile.touched.size(); ++w) tile.touched[w] |= chunk.masks[t][w];
-            voxels += leaf_voxels * static_cast<int64_t>(leaf_count(tile.touched) - before);
-            tile.segments.push_back(chunk.of_tile(t));
+        for (size_t t = 0; t < chunk.tiles.keys().size(); ++t) {
+            const uint32_t number = table.find_or_add(chunk.tiles.keys()[t]);
+            if (number == tiles.size()) tiles.push_back({chunk.tiles.keys()[t], {}, {}, {}});
+            tiles[number].parts.push_back({&chunk.splats, t});
         }
     }
 };
 
-void check_budget(const TileMap& map, const RasterizeParams& params)
-{
-    if (map.voxels <= params.max_voxels) return;
-    throw Error(
-        ExitCode::Memory,
-        fmt::format("the particles touch more than {} voxels of {:g} m ({} for the density "
-                    "alone), over the limit of {}; raise voxel_size, lower the particles' "
-                    "radius, or raise max_voxels",
-                    map.voxels, params.voxel_size,
-                    format_bytes(4.0 * static_cast<double>(map.voxels)), params.max_voxels));
-}
-
-TileMap fill_tiles(const ParticleSet& particles, const RasterPlan& plan,
-                   const RasterizeParams& params, const ChannelList& channels)
+std::vector<GridTile> fill_tiles(const ParticleSet& particles, const RasterPlan& plan,
+                                 const RasterizeParams& params, const ChannelList& channels)
 {
     TileMap map;
-    LeafListsPool pool;
+    ChainsPool pool;
+    VoxelBudget budget(params);
     size_t first = 0;
     for (const size_t end : plan.wave_end) {
         std::vector<BinnedChunk> binned(end - first);
         parallel_for(binned.size(), 1, [&](size_t begin, size_t stop) {
             for (size_t c = begin; c < stop; ++c) {
-                const ChunkRange& range = plan.chunks[first + c];
-                binned[c] =
-                    bin_chunk(particles, plan.rules, range.first, range.last, range.all_usable);
+                binned[c] = bin_chunk(particles, plan.rules, plan.chunks[first + c]);
             }
         });
         for (const BinnedChunk& chunk : binned) map.add(chunk);
-        check_budget(map, params);
         parallel_for(map.tiles.size(), 1, [&](size_t begin, size_t stop) {
             for (size_t t = begin; t < stop; ++t) {
-                rasterize_tile(map.tiles[t], channels, pool);
-                map.tiles[t].segments.clear();
+                rasterize_tile(map.tiles[t], channels, pool, budget);
             }
         });
         first = end;
     }
-    return map;
+    return std::move(map.tiles);
 }
 
 ParticleGrids rasterize_checked(const ParticleSet& particles, const RasterizeParams& params)
@@ -305,25 +309,25 @@ ParticleGrids rasterize_checked(const ParticleSet& particles, const RasterizePar
                      plan.unusable, particles.size());
     }
     const ChannelList channels = make_channels(particles, params.channels);
-    TileMap map = fill_tiles(particles, plan, params, channels);
-    parallel_for(map.tiles.size(), 1, [&](size_t begin, size_t end) {
+    std::vector<GridTile> tiles = fill_tiles(particles, plan, params, channels);
+    parallel_for(tiles.size(), 1, [&](size_t begin, size_t end) {
         for (size_t t = begin; t < end; ++t) {
-            for (LeafSet& set : map.tiles[t].leaves) finish(set);
+            for (LeafSet& set : tiles[t].leaves) finish(set);
         }
     });
 
     ParticleGrids grids;
-    grids.density = build_grid<openvdb::FloatGrid>("density", params, map.tiles, &LeafSet::density);
+    grids.density = build_grid<openvdb::FloatGrid>("density", params, tiles, &LeafSet::density);
     if (channels.velocity) {
         grids.velocity =
-            build_grid<openvdb::Vec3SGrid>("velocity", params, map.tiles, &LeafSet::velocity);
+            build_grid<openvdb::Vec3SGrid>("velocity", params, tiles, &LeafSet::velocity);
     }
     if (channels.temperature) {
         grids.temperature =
-            build_grid<openvdb::FloatGrid>("temperature", params, map.tiles, &LeafSet::temperature);
+            build_grid<openvdb::FloatGrid>("temperature", params, tiles, &LeafSet::temperature);
     }
     if (channels.color) {
-        grids.color = build_grid<openvdb::Vec3SGrid>("Cd", params, map.tiles, &LeafSet::color);
+        grids.color = build_grid<openvdb::Vec3SGrid>("Cd", params, tiles, &LeafSet::color);
     }
     return grids;
 }

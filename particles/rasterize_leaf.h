@@ -59,11 +59,11 @@ void accumulate_splats(std::span<const TileSplat> splats, const AttributeCompone
 /// Sums of one leaf's list. Long lists are summed in float by blocks and the blocks in double: a
 /// plain float sum of a million equal splats drifts by percents.
 template <int Channels>
-void accumulate_leaf(const LeafLists& lists, int leaf, const AttributeComponent* channels,
+void accumulate_leaf(const SplatChains& lists, size_t leaf, const AttributeComponent* channels,
                      LeafSums<Channels>& sums)
 {
     sums = {};
-    if (lists.count(leaf) <= LeafLists::block_size) {
+    if (lists.count(leaf) <= SplatChains::block_size) {
         lists.for_each_block(leaf, [&](std::span<const TileSplat> splats) {
             accumulate_splats<Channels>(splats, channels, sums);
         });

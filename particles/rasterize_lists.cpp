@@ -1,44 +1,25 @@
 #include "particles/rasterize_lists.h"
 
 namespace mote {
-namespace {
 
-constexpr size_t max_copies = 1'000'000;
-constexpr size_t blocks_per_slab = 256;
-
-}  // namespace
-
-void LeafLists::append_block(Bucket& bucket)
+bool fill_leaf_lists(std::span<const std::span<const TileSplat>> segments, size_t& segment,
+                     size_t& offset, SplatChains& lists)
 {
-    if (used_ == blocks_.size()) {
-        slabs_.push_back(std::make_unique_for_overwrite<Block[]>(blocks_per_slab));
-        for (size_t i = 0; i < blocks_per_slab; ++i) blocks_.push_back(&slabs_.back()[i]);
-    }
-    (bucket.last ? bucket.last->next : bucket.first) = used_;
-    bucket.last = blocks_[used_++];
-}
-
-bool LeafLists::fill(std::span<const std::span<const TileSplat>> segments, size_t& segment,
-                     size_t& offset)
-{
-    buckets_.fill({});
-    used_ = 0;
+    constexpr size_t max_copies = 1'000'000;
+    lists.reset(tile_leaves);
     size_t copies = 0;
-    for (; segment < segments.size() && copies < max_copies; ++segment, offset = 0) {
+    for (; segment < segments.size(); ++segment, offset = 0) {
         for (; offset < segments[segment].size(); ++offset) {
             if (copies >= max_copies) return true;
             const TileSplat& splat = segments[segment][offset];
             for_each_leaf(splat, leaf_box(splat), [&](int k) {
-                Bucket& bucket = buckets_[static_cast<size_t>(k)];
-                const size_t slot = bucket.count++ % block_size;
-                if (slot == 0) append_block(bucket);
-                TileSplat& copy = bucket.last->splats[slot];
-                copy.x = splat.x - static_cast<float>(leaf_size * (k >> 6));
-                copy.y = splat.y - static_cast<float>(leaf_size * (k >> 3 & 7));
-                copy.z = splat.z - static_cast<float>(leaf_size * (k & 7));
-                copy.support = splat.support;
-                copy.root_density = splat.root_density;
-                copy.particle = splat.particle;
+                lists.append(static_cast<size_t>(k)) = {
+                    splat.x - static_cast<float>(leaf_size * (k >> 6)),
+                    splat.y - static_cast<float>(leaf_size * (k >> 3 & 7)),
+                    splat.z - static_cast<float>(leaf_size * (k & 7)),
+                    splat.support,
+                    splat.root_density,
+                    splat.particle};
                 ++copies;
             });
         }
@@ -46,19 +27,19 @@ bool LeafLists::fill(std::span<const std::span<const TileSplat>> segments, size_
     return copies > 0;
 }
 
-std::unique_ptr<LeafLists> LeafListsPool::take()
+std::unique_ptr<SplatChains> ChainsPool::take()
 {
     const std::lock_guard lock(mutex_);
-    if (idle_.empty()) return std::make_unique<LeafLists>();
-    std::unique_ptr<LeafLists> lists = std::move(idle_.back());
+    if (idle_.empty()) return std::make_unique<SplatChains>();
+    std::unique_ptr<SplatChains> chains = std::move(idle_.back());
     idle_.pop_back();
-    return lists;
+    return chains;
 }
 
-void LeafListsPool::give_back(std::unique_ptr<LeafLists> lists)
+void ChainsPool::give_back(std::unique_ptr<SplatChains> chains)
 {
     const std::lock_guard lock(mutex_);
-    idle_.push_back(std::move(lists));
+    idle_.push_back(std::move(chains));
 }
 
 }  // namespace mote

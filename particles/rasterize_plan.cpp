@@ -4,12 +4,11 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "particles/rasterize_tiles.h"
 
 namespace mote {
 namespace {
 
-constexpr size_t block_size = 16'384;           ///< particles
+constexpr size_t block_size = 32'768;           ///< particles
 constexpr double splats_per_chunk = 300'000.0;  ///< about 7 MB
 constexpr double splats_per_wave = 16e6;        ///< about 400 MB
 /// Index coordinates stay this far inside the 32-bit range.
@@ -39,10 +38,42 @@ double expected_tiles(float support)
     return along_axis * along_axis * along_axis;
 }
 
+/// Whether a block of resting particles without channels, by far the most common kind, is plainly
+/// fine; one pass of vector comparisons. False means: look at each particle.
+bool is_plainly_usable(const ParticleSet& particles, const SplatRules& rules, size_t first,
+                       size_t last)
+{
+    const bool is_simple = !rules.use_velocity && !rules.use_temperature && !rules.use_color &&
+                           !particles.mass.empty() && !particles.radius.empty();
+    if (!is_simple) return false;
+    const float far = static_cast<float>(1e9 / rules.index_from_world);
+    const float wide = static_cast<float>(tile_size / rules.index_from_world);
+    const float heavy = static_cast<float>(1e12 / rules.inv_voxel_volume);
+    const auto is_within = [](float v, float limit) { return v >= -limit && v <= limit; };
+    int good = 0;
+    for (size_t i = first; i < last; ++i) {
+        const Vec3 p = particles.position[i];
+        const float r = particles.radius[i];
+        const float m = particles.mass[i];
+        good += static_cast<int>(is_within(p.x, far) & is_within(p.y, far) & is_within(p.z, far) &
+                                 (r >= 0.0f) & (r <= wide) & (m > 0.0f) & (m <= heavy));
+    }
+    return static_cast<size_t>(good) == last - first;
+}
+
 BlockReport inspect(const ParticleSet& particles, const SplatRules& rules, size_t first,
                     size_t last)
 {
     BlockReport report;
+    if (is_plainly_usable(particles, rules, first, last)) {
+        const auto begin = particles.radius.begin();
+        const float widest = *std::max_element(begin + static_cast<ptrdiff_t>(first),
+                                               begin + static_cast<ptrdiff_t>(last));
+        const double support = static_cast<double>(widest) * rules.index_from_world;
+        report.splats = static_cast<double>(last - first) *
+                        expected_tiles(std::max(min_support_voxels, static_cast<float>(support)));
+        return report;
+    }
     for (size_t i = first; i < last; ++i) {
         if (!is_usable(particles, rules, i)) {
             ++report.unusable;

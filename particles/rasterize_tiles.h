@@ -3,11 +3,10 @@
 #include <array>
 #include <bit>
 #include <cstring>
-#include <memory>
-#include <span>
 #include <vector>
 
-#include "particles/rasterize_splats.h"
+#include "particles/rasterize_chains.h"
+#include "particles/rasterize_plan.h"
 
 namespace mote {
 
@@ -20,17 +19,6 @@ struct TileKey {
 
     bool operator==(const TileKey&) const = default;
 };
-
-/// One splat as a tile or leaf sees it: position relative to the tile's or leaf's first voxel.
-struct TileSplat {
-    float x, y, z;
-    float support;
-    float root_density;
-    uint32_t particle;  ///< where the other attributes are
-};
-
-/// One bit per leaf of a tile: word x, bit 8 y + z.
-using LeafMask = std::array<uint64_t, 8>;
 
 /// The leaves of one tile that a splat may touch: a box of them, both ends included.
 struct LeafBox {
@@ -127,22 +115,15 @@ class TileTable {
     std::vector<uint32_t> slots_;  ///< tile number + 1; 0 = free
 };
 
-/// The splats of a run of particles, grouped by tile and in particle order within each: splats of
-/// tile t are [begin[t], begin[t + 1]). A splat appears once for every tile that it touches.
+/// The splats of a run of particles by tile, in particle order within each. A splat appears once
+/// for every tile that it touches.
 struct BinnedChunk {
-    std::vector<TileKey> keys;
-    std::vector<LeafMask> masks;  ///< leaves touched, per tile
-    std::vector<uint32_t> begin;
-    std::unique_ptr<TileSplat[]> splats;
-
-    [[nodiscard]] std::span<const TileSplat> of_tile(size_t t) const
-    {
-        return {splats.get() + begin[t], begin[t + 1] - begin[t]};
-    }
+    TileTable tiles;
+    SplatChains splats;  ///< one bucket per tile
 };
 
-/// Bins particles [first, last); `all_usable` says that none needs is_usable.
+/// Bins the particles of a chunk.
 [[nodiscard]] BinnedChunk bin_chunk(const ParticleSet& particles, const SplatRules& rules,
-                                    size_t first, size_t last, bool all_usable);
+                                    const ChunkRange& chunk);
 
 }  // namespace mote
