@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "app/compare_threshold.h"
 #include "app/exit_codes.h"
 #include "core/error.h"
 #include "core/text.h"
@@ -212,6 +213,38 @@ void bind_sheet(CLI::App& app, SheetOptions& o)
     bind_log(app, o.log);
 }
 
+void bind_compare(CLI::App& app, CompareOptions& o)
+{
+    app.add_option("tested", o.tested, "Image to judge, .exr or .png")->required()->type_name("A");
+    app.add_option("reference", o.reference, "Image to judge it by, .exr or .png")
+        ->required()
+        ->type_name("B");
+    std::string names;
+    for (const ThresholdMetric& metric : threshold_metrics()) {
+        names += fmt::format("{}{} ({})", names.empty() ? "" : ", ", metric.name, metric.meaning);
+    }
+    app.add_option(
+           "--threshold", o.thresholds,
+           "Return 10 if a channel is over this, e.g. relmse=0.01; repeatable. Figures: " + names)
+        ->type_name("FIGURE=LIMIT")
+        ->allow_extra_args(false);
+    app.add_option(
+           "--layers", o.layers,
+           "Layers to compare, by comma, e.g. rgb,alpha,Z,volume. Default: all but variance "
+           "and samples; both images must have them")
+        ->type_name("LIST");
+    app.add_option("--json", o.json, "Write the figures to this file")->type_name("FILE");
+    app.add_option("--diff", o.difference,
+                   "Write A - B as .exr, or a picture of the first layer's signed relative "
+                   "difference as .png")
+        ->type_name("FILE");
+    bind_log(app, o.log);
+    app.footer(
+        "Examples:\n"
+        "  mote compare new.exr reference.exr --threshold relmse=0.01 --diff diff.png\n"
+        "  mote compare new.exr old.exr --layers rgb,volume --json figures.json\n");
+}
+
 /// The options of every command while the arguments are read.
 struct AllOptions {
     RenderOptions render;
@@ -219,6 +252,7 @@ struct AllOptions {
     InfoOptions info;
     CacheOptions cache;
     SheetOptions sheet;
+    CompareOptions compare;
     SchemaOptions schema;
     std::vector<std::string> shorthands;  ///< overrides that render options stand for
 };
@@ -237,6 +271,8 @@ void bind_all(CLI::App& app, AllOptions& o)
                o.cache);
     bind_sheet(*app.add_subcommand("sheet", "Put images side by side on one contact sheet"),
                o.sheet);
+    bind_compare(*app.add_subcommand("compare", "Measure the error of an image against another"),
+                 o.compare);
     app.add_subcommand("schema", "Print the JSON Schema of scene files")
         ->add_flag("--markdown", o.schema.markdown, "Print the tables of scenes/README.md instead");
     app.add_subcommand("version", "Print the version, the build and the libraries");
@@ -311,6 +347,7 @@ CommandLine chosen_command(const CLI::App& app, AllOptions& o)
         return std::move(o.cache);
     }
     if (name == "sheet") return std::move(o.sheet);
+    if (name == "compare") return std::move(o.compare);
     if (name == "schema") return o.schema;
     return VersionOptions{};
 }

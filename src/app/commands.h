@@ -10,6 +10,8 @@ void run_check(const CheckOptions& options);
 void run_info(const InfoOptions& options);
 void run_cache(const CacheOptions& options);
 void run_sheet(const SheetOptions& options);
+/// Throws Error(BiasFound) when a figure is over its threshold, after writing the files asked for.
+void run_compare(const CompareOptions& options);
 void run_schema(const SchemaOptions& options);
 void run_version(const VersionOptions& options);
 

@@ -82,6 +82,16 @@ struct SheetOptions {
     LogOptions log;
 };
 
+struct CompareOptions {
+    std::string tested;                   ///< A
+    std::string reference;                ///< B
+    std::vector<std::string> thresholds;  ///< "relmse=0.01"
+    std::string layers;                   ///< by comma; empty: all that describe the picture
+    std::string json;                     ///< file; empty: none
+    std::string difference;               ///< .exr or .png; empty: none
+    LogOptions log;
+};
+
 struct SchemaOptions {
     bool markdown = false;
 };
@@ -94,6 +104,6 @@ struct PrintText {
 };
 
 using CommandLine = std::variant<PrintText, RenderOptions, CheckOptions, InfoOptions, CacheOptions,
-                                 SheetOptions, SchemaOptions, VersionOptions>;
+                                 SheetOptions, CompareOptions, SchemaOptions, VersionOptions>;
 
 }  // namespace mote

@@ -1,0 +1,133 @@
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "app/commands.h"
+#include "app/compare_report.h"
+#include "app/compare_threshold.h"
+#include "core/error.h"
+#include "core/text.h"
+#include "image/atomic_file.h"
+#include "image/exr.h"
+#include "image/output_file.h"
+#include "image/png.h"
+#include "verify/compare_images.h"
+#include "verify/difference_image.h"
+
+namespace mote {
+
+namespace {
+
+std::string extension_of(const std::string& path)
+{
+    std::string extension = std::filesystem::path(path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
+
+std::vector<std::string> split_list(const std::string& list)
+{
+    std::vector<std::string> names;
+    size_t begin = 0;
+    while (begin <= list.size()) {
+        const size_t end = std::min(list.find(',', begin), list.size());
+        if (end > begin) names.push_back(list.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return names;
+}
+
+/// The channels R, G and B of a PNG, linear.
+LayeredImage layers_of_png(const std::string& path)
+{
+    const Buffer2D<Spectrum> pixels = read_png(path);
+    LayeredImage image;
+    image.width = pixels.width();
+    image.height = pixels.height();
+    for (int c = 0; c < 3; ++c) {
+        Buffer2D<float> data(image.width, image.height);
+        std::transform(pixels.begin(), pixels.end(), data.begin(),
+                       [c](const Spectrum& pixel) { return pixel[c]; });
+        image.channels.push_back({std::string(1, "RGB"[c]), PixelType::Float, std::move(data)});
+    }
+    return image;
+}
+
+LayeredImage read_layers(const std::string& path)
+{
+    return extension_of(path) == ".png" ? layers_of_png(path) : read_exr(path);
+}
+
+void check_difference_name(const std::string& path)
+{
+    const std::string extension = extension_of(path);
+    if (path.empty() || extension == ".exr" || extension == ".png") return;
+    throw Error(ExitCode::Usage, fmt::format("--diff \"{}\": the name must end in .exr or .png",
+                                             printable(path, 1000)));
+}
+
+/// Relative difference shown in full colour: twice the typical one, or anything if there is none.
+double full_scale_of(const LayerMetrics& layer)
+{
+    const double scale = 2.0 * std::sqrt(layer.rel_mse_trimmed);
+    return std::isfinite(scale) && scale > 0.0 ? scale : 1.0;
+}
+
+/// Returns the line that explains the picture.
+std::string write_difference(const std::string& path, const LayeredImage& tested,
+                             const LayeredImage& reference, const std::vector<LayerMetrics>& layers)
+{
+    if (extension_of(path) == ".exr") {
+        write_exr(path, difference_image(tested, reference, layers), ExrCompression::Zip);
+        return fmt::format("\n{}: A - B\n", printable(path, 1000));
+    }
+    const LayerMetrics& layer = layers.front();
+    const double full_scale = full_scale_of(layer);
+    write_png(path, false_colour(tested, reference, layer, full_scale),
+              {0.0f, ViewTransform::Srgb});
+    return fmt::format(
+        "\n{}: {}, red where A is brighter, blue where B is, full colour at +-{:.3g} %\n",
+        printable(path, 1000), printable(layer.name), 100.0 * full_scale);
+}
+
+void write_text(const std::string& path, const std::string& text)
+{
+    write_atomically(path, [&](const std::string& temporary_path) {
+        OutputFile file(temporary_path, path);
+        file.write(text.data(), text.size());
+        file.finish();
+    });
+}
+
+}  // namespace
+
+void run_compare(const CompareOptions& options)
+{
+    std::vector<Threshold> thresholds;
+    for (const std::string& text : options.thresholds) thresholds.push_back(parse_threshold(text));
+    check_difference_name(options.difference);
+    const LayeredImage tested = read_layers(options.tested);
+    const LayeredImage reference = read_layers(options.reference);
+    const NamedImage named_tested{tested, options.tested};
+    const NamedImage named_reference{reference, options.reference};
+    const std::vector<LayerMetrics> layers =
+        compare_images(named_tested, named_reference, split_list(options.layers), {});
+    const std::vector<std::string> violations = find_violations(thresholds, layers);
+    const CompareReport report{named_tested, named_reference, layers, options.thresholds,
+                               violations};
+    fmt::print("{}", compare_table(report));
+    if (!options.difference.empty()) {
+        fmt::print("{}", write_difference(options.difference, tested, reference, layers));
+    }
+    if (!options.json.empty()) write_text(options.json, compare_json(report));
+    if (!violations.empty()) {
+        throw Error(ExitCode::BiasFound,
+                    fmt::format("over the threshold: {}", fmt::join(violations, "; ")));
+    }
+}
+
+}  // namespace mote
