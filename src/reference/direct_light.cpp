@@ -6,19 +6,22 @@
 namespace mote {
 namespace {
 
-/// MIS weight of a shadow ray against a scattered ray.
-float shadow_ray_weight(const PathTracerParams& params, float pdf_light, float pdf_phase)
+/// MIS weight of a shadow ray of density `pdf_light` against a scattered ray of density `pdf_phase`
+/// and against equiangular sampling.
+float shadow_ray_weight(const PathTracerParams& params, float pdf_light, float pdf_phase,
+                        float pdf_equiangular = 0.0f)
 {
-    if (params.light_strategy == LightStrategy::NextEvent) return 1.0f;
-    return mis_weight(params.mis, pdf_light, pdf_phase);
+    if (params.light_strategy == LightStrategy::NextEvent) pdf_phase = 0.0f;
+    return mis_weight(params.mis, pdf_light, pdf_phase, pdf_equiangular);
 }
 
 /// MIS weight of light met by a ray that a shadow ray would have found with `pdf_light`.
-float seen_weight(const PathTracerParams& params, float pdf_ray, float pdf_light)
+float seen_weight(const PathTracerParams& params, float pdf_ray, float pdf_light,
+                  float pdf_equiangular = 0.0f)
 {
     if (!(pdf_light > 0.0f)) return 1.0f;
     if (params.light_strategy == LightStrategy::NextEvent) return 0.0f;
-    return mis_weight(params.mis, pdf_ray, pdf_light);
+    return mis_weight(params.mis, pdf_ray, pdf_light, pdf_equiangular);
 }
 
 /// Density of meeting a point of an emissive volume along a scattered ray [1/m^3]: distances count
@@ -67,7 +70,12 @@ Spectrum estimate_direct_light(const TraceContext& context, const ScatterEvent& 
     if (!sample) return Spectrum(0.0f);
     const float phase = eval_phase(*event.phase, event.wo, sample->wi);
     const float pdf = choice->pmf * sample->pdf_dir;
-    const float weight = sample->is_delta ? 1.0f : shadow_ray_weight(context.params, pdf, phase);
+    float pdf_equiangular = 0.0f;
+    if (event.first && choice->source == LightSource::Lamp) {
+        pdf_equiangular = equiangular_ratio(context, *event.first, choice->index) * sample->pdf_dir;
+    }
+    const float weight =
+        shadow_ray_weight(context.params, pdf, sample->is_delta ? 0.0f : phase, pdf_equiangular);
     if (!(weight > 0.0f) || !(max_component(sample->Li) > 0.0f)) return Spectrum(0.0f);
     const Ray ray{event.x, sample->wi, event.time};
     return sample->Li * (weight * phase / pdf) *
@@ -92,9 +100,12 @@ Spectrum seen_light(const TraceContext& context, const LightRay& light_ray,
             if (!hit) return;
             float weight = 1.0f;
             if (!light_ray.is_camera) {
-                const float pdf_light = context.lights.pmf(LightSource::Lamp, index, ray.o) *
-                                        light_pdf(light, ray.o, ray.d);
-                weight = seen_weight(context.params, light_ray.pdf_dir, pdf_light);
+                const float pdf_dir = light_pdf(light, ray.o, ray.d);
+                const float pmf = context.lights.pmf(LightSource::Lamp, index, ray.o);
+                const float ratio =
+                    light_ray.first ? equiangular_ratio(context, *light_ray.first, index) : 0.0f;
+                weight =
+                    seen_weight(context.params, light_ray.pdf_dir, pmf * pdf_dir, ratio * pdf_dir);
             }
             if (weight > 0.0f) sum += hit->Le * (weight * visibility(hit->distance));
         });

@@ -3,18 +3,10 @@
 #include <optional>
 
 #include "core/rng.h"
-#include "reference/light_sampler.h"
-#include "scene/path_tracer_params.h"
-#include "scene/scene.h"
+#include "reference/equiangular.h"
+#include "reference/trace_context.h"
 
 namespace mote {
-
-/// What every part of the path tracer needs to see.
-struct TraceContext {
-    const Scene& scene;
-    const LightSampler& lights;
-    const PathTracerParams& params;
-};
 
 /// A scattering event, about to be lit.
 struct ScatterEvent {
@@ -22,13 +14,15 @@ struct ScatterEvent {
     Vec3 wo;  ///< where the path came from [unit, away from x]
     float time = 0.0f;
     const Phase* phase = nullptr;
+    const FirstEvent* first = nullptr;  ///< set if equiangular sampling competes
 };
 
 /// A ray on which light may arrive, with the density of its direction for MIS.
 struct LightRay {
     Ray ray;
-    float pdf_dir = 0.0f;   ///< [1/sr] with which scattering chose it
-    bool is_camera = true;  ///< chosen by no event: shadow rays do not compete
+    float pdf_dir = 0.0f;               ///< [1/sr] with which scattering chose it
+    bool is_camera = true;              ///< chosen by no event: shadow rays do not compete
+    const FirstEvent* first = nullptr;  ///< the event it left, if equiangular sampling competes
 };
 
 /// Light that reaches the event by one shadow ray and scatters towards wo, weighted against

@@ -20,7 +20,13 @@ PathResult trace_path(const Scene& scene, const LightSampler& lights,
     const bool has_emission = !lights.emissive_volumes().empty();
     PathResult result;
     Spectrum beta(1.0f);
-    LightRay light_ray{camera_ray, 0.0f, true};
+    LightRay light_ray{camera_ray, 0.0f, true, nullptr};
+    std::optional<CameraSegment> segment;  // set if equiangular sampling takes part
+    if (params.equiangular && params.max_bounces > 0) {
+        segment = make_camera_segment(scene.media, camera_ray);
+    }
+    if (segment) result.direct += estimate_equiangular(context, *segment, rng);
+    FirstEvent first;
     for (int event_count = 0;; ++event_count) {
         const Ray& ray = light_ray.ray;
         const bool is_last = event_count == params.max_bounces;
@@ -56,7 +62,12 @@ PathResult trace_path(const Scene& scene, const LightSampler& lights,
 
         beta *= albedo;
         if (!(max_component(beta) > 0.0f)) return result;
-        const ScatterEvent event{ray.at(collision->t), -ray.d, ray.time, &volume.phase};
+        const FirstEvent* competitor = nullptr;
+        if (segment && event_count == 0) {
+            first = make_first_event(scene.media, *segment, collision->t);
+            competitor = &first;
+        }
+        const ScatterEvent event{ray.at(collision->t), -ray.d, ray.time, &volume.phase, competitor};
         part_of(result, event_count + 1) += beta * estimate_direct_light(context, event, rng);
 
         if (event_count + 1 > params.roulette_start) {
@@ -65,7 +76,8 @@ PathResult trace_path(const Scene& scene, const LightSampler& lights,
             beta /= survival;
         }
         const Vec3 wi = sample_phase(volume.phase, event.wo, rng.uniform2());
-        light_ray = {Ray{event.x, wi, event.time}, phase_pdf(volume.phase, event.wo, wi), false};
+        light_ray = {Ray{event.x, wi, event.time}, phase_pdf(volume.phase, event.wo, wi), false,
+                     competitor};
     }
 }
 

@@ -27,11 +27,12 @@ enum class MisHeuristic { Power, Balance };
 struct PathTracerParams {
     int max_bounces = 1;     ///< scattering events of a path, [0, 10^6]; 1 = single scattering
     int roulette_start = 4;  ///< events before Russian roulette may end a path
-    TransmittanceKind transmittance = TransmittanceKind::Ratio;  ///< of shadow rays
+    TransmittanceKind transmittance = TransmittanceKind::ResidualRatio;  ///< of shadow rays
     LightSamplerKind light_sampler = LightSamplerKind::Auto;
     LightStrategy light_strategy = LightStrategy::Auto;
     MisHeuristic mis = MisHeuristic::Power;
-    bool equiangular = false;  ///< add equiangular distances by MIS (near lights, first event)
+    bool equiangular =
+        false;  ///< add equiangular distances by MIS: point and sphere lamps, first event
 };
 
 }  // namespace mote

@@ -49,8 +49,7 @@ PathTracerParams base_params(int max_bounces)
 std::vector<PathTracerParams> variants(int max_bounces)
 {
     std::vector<PathTracerParams> list;
-    for (const TransmittanceKind kind :
-         {TransmittanceKind::ResidualRatio, TransmittanceKind::Exact}) {
+    for (const TransmittanceKind kind : {TransmittanceKind::Ratio, TransmittanceKind::Exact}) {
         list.push_back(base_params(max_bounces));
         list.back().transmittance = kind;
     }

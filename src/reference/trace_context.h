@@ -1,0 +1,16 @@
+#pragma once
+
+#include "reference/light_sampler.h"
+#include "scene/path_tracer_params.h"
+#include "scene/scene.h"
+
+namespace mote {
+
+/// What every part of the path tracer needs to see.
+struct TraceContext {
+    const Scene& scene;
+    const LightSampler& lights;
+    const PathTracerParams& params;
+};
+
+}  // namespace mote
