@@ -48,6 +48,51 @@ Buffer2D<Spectrum> scale_down(const Buffer2D<Spectrum>& in, int width, int heigh
     return out;
 }
 
+/// Where the images go.
+struct Layout {
+    int columns = 0;
+    int rows = 0;
+    int cell_width = 0;
+    int cell_height = 0;
+    int gap = 0;
+
+    [[nodiscard]] int left(int i) const { return gap + (i % columns) * (cell_width + gap); }
+    [[nodiscard]] int top(int i) const { return gap + (i / columns) * (cell_height + gap); }
+};
+
+Layout make_layout(const ContactSheetParams& params, int count, int image_width, int image_height)
+{
+    Layout layout;
+    layout.columns = std::min(params.columns, count);
+    layout.rows = (count + layout.columns - 1) / layout.columns;
+    layout.gap = params.gap;
+    layout.cell_width = std::min(image_width, params.cell_width);
+    const double scale = static_cast<double>(layout.cell_width) / image_width;
+    layout.cell_height = std::max(1, static_cast<int>(std::lround(image_height * scale)));
+    return layout;
+}
+
+Buffer2D<Spectrum> make_sheet(const Layout& layout)
+{
+    const int64_t width = int64_t{layout.columns} * (layout.cell_width + layout.gap) + layout.gap;
+    const int64_t height = int64_t{layout.rows} * (layout.cell_height + layout.gap) + layout.gap;
+    if (width > max_image_pixels / height) {
+        throw Error(ExitCode::Input, "contact sheet: too large; lower the cell width");
+    }
+    return {static_cast<int>(width), static_cast<int>(height), Spectrum(0.01f)};
+}
+
+void check_same_size(const Buffer2D<Spectrum>& image, const std::string& path,
+                     const Buffer2D<Spectrum>& first, const std::string& first_path)
+{
+    if (image.width() == first.width() && image.height() == first.height()) return;
+    throw Error(ExitCode::Input,
+                fmt::format("contact sheet: \"{}\" is {} x {} pixels but \"{}\" is {} x {}; give "
+                            "images of one size",
+                            printable(path, 1000), image.width(), image.height(),
+                            printable(first_path, 1000), first.width(), first.height()));
+}
+
 }  // namespace
 
 void make_contact_sheet(const std::vector<std::string>& image_paths,
@@ -57,41 +102,19 @@ void make_contact_sheet(const std::vector<std::string>& image_paths,
     if (params.columns < 1 || params.cell_width < 1 || params.gap < 0) {
         throw Error(ExitCode::Input, "contact sheet: columns and width must be at least 1");
     }
-    Buffer2D<Spectrum> sheet;
-    int full_width = 0, full_height = 0;
-    int width = 0, height = 0;
+    const Buffer2D<Spectrum> first = read_png(image_paths[0]);
     const int count = static_cast<int>(image_paths.size());
-    const int columns = std::min(params.columns, count);
-    const int rows = (count + columns - 1) / columns;
+    const Layout layout = make_layout(params, count, first.width(), first.height());
+    Buffer2D<Spectrum> sheet = make_sheet(layout);
     for (int i = 0; i < count; ++i) {
         const std::string& path = image_paths[static_cast<size_t>(i)];
-        const Buffer2D<Spectrum> image = read_png(path);
-        if (i == 0) {
-            full_width = image.width();
-            full_height = image.height();
-            width = std::min(full_width, params.cell_width);
-            height = std::max(1, static_cast<int>(std::lround(static_cast<double>(full_height) *
-                                                              width / full_width)));
-            const int64_t sheet_width = int64_t{columns} * (width + params.gap) + params.gap;
-            const int64_t sheet_height = int64_t{rows} * (height + params.gap) + params.gap;
-            if (sheet_width > max_image_pixels / sheet_height) {
-                throw Error(ExitCode::Input, "contact sheet: too large; lower the cell width");
+        const Buffer2D<Spectrum> image = i == 0 ? first : read_png(path);
+        check_same_size(image, path, first, image_paths[0]);
+        const Buffer2D<Spectrum> cell = scale_down(image, layout.cell_width, layout.cell_height);
+        for (int y = 0; y < cell.height(); ++y) {
+            for (int x = 0; x < cell.width(); ++x) {
+                sheet.at(layout.left(i) + x, layout.top(i) + y) = cell.at(x, y);
             }
-            sheet = Buffer2D<Spectrum>(static_cast<int>(sheet_width),
-                                       static_cast<int>(sheet_height), Spectrum(0.01f));
-        } else if (image.width() != full_width || image.height() != full_height) {
-            throw Error(
-                ExitCode::Input,
-                fmt::format("contact sheet: \"{}\" is {} x {} pixels but \"{}\" is {} x {}; "
-                            "give images of one size",
-                            printable(path, 1000), image.width(), image.height(),
-                            printable(image_paths[0], 1000), full_width, full_height));
-        }
-        const Buffer2D<Spectrum> cell = scale_down(image, width, height);
-        const int left = params.gap + (i % columns) * (width + params.gap);
-        const int top = params.gap + (i / columns) * (height + params.gap);
-        for (int y = 0; y < height; ++y) {
-            for (int x = 0; x < width; ++x) sheet.at(left + x, top + y) = cell.at(x, y);
         }
     }
     write_png(out_path, sheet, {0.0f, ViewTransform::Srgb});

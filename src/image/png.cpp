@@ -39,7 +39,7 @@ struct PngImage {
 
 uint8_t to_byte(float linear)
 {
-    return static_cast<uint8_t>(encode_srgb(linear) * 255.0f + 0.5f);
+    return static_cast<uint8_t>(std::lround(encode_srgb(linear) * 255.0f));
 }
 
 std::vector<uint8_t> to_bytes(const Buffer2D<Spectrum>& image, const PreviewParams& params)
