@@ -80,7 +80,10 @@ void kernel_lattice_sums(const KernelCentres& centres, float* sums)
         for (int j = 1 - reach; j <= reach; ++j) {
             const Float8 b = a - falloff(j, centres.y);
             Float8 row = {};
-            for (int k = 0; k < 2 * reach; ++k) row += square_if_positive(b - along_z[k]);
+            for (int k = 0; k < 2 * reach; ++k) {
+                const Float8 root = positive_part(b - along_z[k]);
+                row = multiply_add(root, root, row);
+            }
             sum += row;
         }
     }

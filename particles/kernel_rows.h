@@ -2,6 +2,8 @@
 
 #include <cstring>
 
+#include <immintrin.h>
+
 #include "core/math.h"
 
 namespace mote {
@@ -21,12 +23,24 @@ inline void store8(float* to, Float8 v)
     std::memcpy(to, &v, sizeof v);
 }
 
-/// Square of v where it is positive, 0 elsewhere.
-[[nodiscard]] inline Float8 square_if_positive(Float8 v)
+[[nodiscard]] inline Float8 positive_part(Float8 v)
 {
+#ifdef __AVX__
+    return _mm256_max_ps(v, _mm256_setzero_ps());
+#else
     constexpr Float8 zero = {};
-    const Float8 inside = v > zero ? v : zero;
-    return inside * inside;
+    return v > zero ? v : zero;
+#endif
+}
+
+/// a b + c; one rounding where the machine has it.
+[[nodiscard]] inline Float8 multiply_add(Float8 a, Float8 b, Float8 c)
+{
+#ifdef __FMA__
+    return _mm256_fmadd_ps(a, b, c);
+#else
+    return a * b + c;
+#endif
 }
 
 /// The root of a scaled kernel, s (1 - r^2/h^2), on an 8^3 block of lattice points: its square is
@@ -53,10 +67,10 @@ struct KernelBlock {
     return block;
 }
 
-/// Kernel values of the row at (x, y).
-[[nodiscard]] inline Float8 eval_row(const KernelBlock& block, size_t x, size_t y)
+/// Roots of the kernel values of the row at (x, y).
+[[nodiscard]] inline Float8 eval_row_roots(const KernelBlock& block, size_t x, size_t y)
 {
-    return square_if_positive(block.along_z - block.across[0][x] - block.across[1][y]);
+    return positive_part(block.along_z - block.across[0][x] - block.across[1][y]);
 }
 
 }  // namespace mote

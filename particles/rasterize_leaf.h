@@ -45,11 +45,13 @@ void accumulate_splats(std::span<const TileSplat> splats, const AttributeCompone
         const size_t y_end = end(s.y + s.support);
         for (size_t x = first(s.x - s.support); x < x_end; ++x) {
             for (size_t y = y_begin; y < y_end; ++y) {
-                const Float8 w = eval_row(kernel, x, y);
+                const Float8 root = eval_row_roots(kernel, x, y);
                 const size_t row = leaf_size * (leaf_size * x + y);
-                for (size_t c = 0; c <= Channels; ++c) {
+                float* const density = &sums.field[0][row];
+                store8(density, multiply_add(root, root, load8(density)));
+                for (size_t c = 1; c <= Channels; ++c) {
                     float* const sum = &sums.field[c][row];
-                    store8(sum, load8(sum) + (c == 0 ? w : w * value[c - 1]));
+                    store8(sum, load8(sum) + root * root * value[c - 1]);
                 }
             }
         }

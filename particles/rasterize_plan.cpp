@@ -49,16 +49,20 @@ bool is_plainly_usable(const ParticleSet& particles, const SplatRules& rules, si
     const float far = static_cast<float>(1e9 / rules.index_from_world);
     const float wide = static_cast<float>(tile_size / rules.index_from_world);
     const float heavy = static_cast<float>(1e12 / rules.inv_voxel_volume);
-    const auto is_within = [](float v, float limit) { return v >= -limit && v <= limit; };
-    int good = 0;
+    int bad = 0;  // no branches, so that the loop vectorises; NaN compares false
     for (size_t i = first; i < last; ++i) {
-        const Vec3 p = particles.position[i];
+        const Vec3 p = glm::abs(particles.position[i]);
         const float r = particles.radius[i];
         const float m = particles.mass[i];
-        good += static_cast<int>(is_within(p.x, far) & is_within(p.y, far) & is_within(p.z, far) &
-                                 (r >= 0.0f) & (r <= wide) & (m > 0.0f) & (m <= heavy));
+        bad += p.x <= far ? 0 : 1;
+        bad += p.y <= far ? 0 : 1;
+        bad += p.z <= far ? 0 : 1;
+        bad += r >= 0.0f ? 0 : 1;
+        bad += r <= wide ? 0 : 1;
+        bad += m > 0.0f ? 0 : 1;
+        bad += m <= heavy ? 0 : 1;
     }
-    return static_cast<size_t>(good) == last - first;
+    return bad == 0;
 }
 
 BlockReport inspect(const ParticleSet& particles, const SplatRules& rules, size_t first,
