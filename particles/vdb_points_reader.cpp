@@ -2,8 +2,6 @@
 #include <cstring>
 #include <filesystem>
 
-#include <sys/mman.h>
-
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>
 #include <openvdb/points/AttributeArray.h>
@@ -13,6 +11,7 @@
 #include "core/guarded_child.h"
 #include "core/text.h"
 #include "particles/readers.h"
+#include "particles/shared_columns.h"
 
 namespace mote {
 
@@ -21,80 +20,6 @@ namespace {
 using openvdb::points::AttributeArray;
 using openvdb::points::PointDataGrid;
 using openvdb::points::PointDataTree;
-
-/// What the child found, at the head of the memory it shares with this process.
-struct SharedHeader {
-    uint64_t count = 0;
-    bool is_present[attribute_count] = {};
-    char field_names[attribute_count][64] = {};
-};
-
-/// Memory that a forked child fills for its parent. Pages exist once they are touched, so the room
-/// for the largest possible result costs nothing.
-class SharedBlock {
-  public:
-    SharedBlock(const std::string& file, size_t bytes) : bytes_(bytes)
-    {
-        start_ = mmap(nullptr, bytes, PROT_READ | PROT_WRITE,
-                      MAP_SHARED | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
-        if (start_ == MAP_FAILED) {
-            throw Error(ExitCode::Memory, fmt::format("{}: no memory to read it into ({})", file,
-                                                      format_bytes(static_cast<double>(bytes))));
-        }
-    }
-    ~SharedBlock() { munmap(start_, bytes_); }
-    SharedBlock(const SharedBlock&) = delete;
-    SharedBlock& operator=(const SharedBlock&) = delete;
-    [[nodiscard]] char* start() const { return static_cast<char*>(start_); }
-
-  private:
-    void* start_ = nullptr;
-    size_t bytes_ = 0;
-};
-
-size_t value_bytes(Attribute attribute)
-{
-    if (attribute == Attribute::Id) return sizeof(int64_t);
-    return sizeof(float) * static_cast<size_t>(attribute_components(attribute));
-}
-
-/// One array per attribute, in the order of the enumeration, after the header.
-class SharedColumns {
-  public:
-    SharedColumns(const std::string& file, size_t capacity)
-        : capacity_(capacity), block_(file, size_of(capacity))
-    {
-        new (block_.start()) SharedHeader;
-    }
-
-    [[nodiscard]] SharedHeader& header() const
-    {
-        return *reinterpret_cast<SharedHeader*>(block_.start());
-    }
-    [[nodiscard]] size_t capacity() const { return capacity_; }
-    [[nodiscard]] char* column(Attribute attribute) const
-    {
-        size_t offset = align(sizeof(SharedHeader));
-        for (int a = 0; a < static_cast<int>(attribute); ++a) {
-            offset += align(capacity_ * value_bytes(static_cast<Attribute>(a)));
-        }
-        return block_.start() + offset;
-    }
-
-  private:
-    static size_t align(size_t bytes) { return (bytes + 63) / 64 * 64; }
-    static size_t size_of(size_t capacity)
-    {
-        size_t bytes = align(sizeof(SharedHeader));
-        for (int a = 0; a < attribute_count; ++a) {
-            bytes += align(capacity * value_bytes(static_cast<Attribute>(a)));
-        }
-        return bytes;
-    }
-
-    size_t capacity_;
-    SharedBlock block_;
-};
 
 [[noreturn]] void fail(const std::string& what)
 {
@@ -344,39 +269,6 @@ void read_into(const std::string& path, const PointRequest& request, uint64_t fi
     }
 }
 
-template <class T>
-void copy_column(const SharedColumns& columns, Attribute attribute, std::vector<T>& to)
-{
-    if (to.empty()) return;
-    std::memcpy(static_cast<void*>(to.data()), columns.column(attribute), to.size() * sizeof(T));
-}
-
-PointBuffer to_buffer(const SharedColumns& columns)
-{
-    const SharedHeader& header = columns.header();
-    PointBuffer buffer;
-    for (int a = 0; a < attribute_count; ++a) {
-        if (!header.is_present[a]) continue;
-        const auto attribute = static_cast<Attribute>(a);
-        const int components = attribute_components(attribute);
-        for (int c = 0; c < components; ++c) {
-            buffer.bindings.push_back({attribute, c, buffer.fields.size(), c});
-        }
-        buffer.fields.push_back({header.field_names[a], components});
-    }
-    buffer.resize(header.count);
-    copy_column(columns, Attribute::Position, buffer.set.position);
-    copy_column(columns, Attribute::Velocity, buffer.set.velocity);
-    copy_column(columns, Attribute::Radius, buffer.set.radius);
-    copy_column(columns, Attribute::Mass, buffer.set.mass);
-    copy_column(columns, Attribute::Density, buffer.density);
-    copy_column(columns, Attribute::Temperature, buffer.set.temperature);
-    copy_column(columns, Attribute::Color, buffer.set.color);
-    copy_column(columns, Attribute::Id, buffer.set.id);
-    copy_column(columns, Attribute::Age, buffer.set.age);
-    return buffer;
-}
-
 }  // namespace
 
 // The file is untrusted and OpenVDB 10 checks little of it, so only a child process under limits
@@ -387,16 +279,16 @@ PointBuffer read_vdb_points(const std::string& path, const PointRequest& request
     std::error_code error;
     const auto file_bytes = static_cast<uint64_t>(std::filesystem::file_size(path, error));
     if (error) fail(fmt::format("{}: {}", path, error.message()));
-    // Points with positions of their own take a byte and more, however well they compress.
+    // Points with positions of their own take more than a byte, however well they compress.
     const uint64_t most = std::min(
-        static_cast<uint64_t>(std::max(0.0f, request.params.max_particles)), 4096 + 8 * file_bytes);
+        static_cast<uint64_t>(std::max(0.0f, request.params.max_particles)), 4096 + 2 * file_bytes);
     const SharedColumns columns(path, static_cast<size_t>(most));
     ChildLimits limits;
     limits.memory_bytes = std::max<int64_t>(1'000'000'000, 64 * static_cast<int64_t>(file_bytes));
     limits.cpu_seconds = 5 + static_cast<int>(file_bytes / 5'000'000);
     limits.wall_seconds = 120 + static_cast<int>(file_bytes / 1'000'000);
     run_in_child(path, limits, [&] { read_into(path, request, file_bytes, columns); });
-    return to_buffer(columns);
+    return columns.to_buffer();
 }
 
 }  // namespace mote

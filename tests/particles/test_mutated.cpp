@@ -55,7 +55,7 @@ Outcome read_damaged(const std::string& name, const std::string& whole, uint32_t
         try {
             const ParticleSet set = read_particle_file(path, {}, 24.0);
             ++outcome.read;
-            EXPECT_LE(set.size(), 4096 + 8 * whole.size());
+            EXPECT_LE(set.size(), 4096 + 2 * whole.size());
             for (size_t i = 0; i < set.size(); ++i) {
                 EXPECT_TRUE(is_finite(set.position[i]) && set.radius[i] > 0.0f);
             }
