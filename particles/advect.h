@@ -14,11 +14,12 @@ struct AdvectSteps {
     float dt = 0.25f;  ///< [s]
 };
 
-/// Steps that resolve eddies of this size and speed, bounded so that the cost is, too.
-[[nodiscard]] inline AdvectSteps choose_steps(float lifetime, float eddy_speed, float eddy_size)
+/// Steps that resolve eddies of this size and speed, at most `most` so that the cost is bounded.
+[[nodiscard]] inline AdvectSteps choose_steps(float lifetime, float eddy_speed, float eddy_size,
+                                              float most)
 {
     const float wanted = 6.0f * lifetime * eddy_speed / eddy_size;
-    const float count = std::clamp(std::ceil(wanted), 8.0f, 32.0f);
+    const float count = std::clamp(std::ceil(wanted), 8.0f, most);
     return {static_cast<int>(count), lifetime / count};
 }
 

@@ -56,7 +56,7 @@ Emission emit_burst(const EmitterParams& params, double since_start)
         puffs[i] = (0.45f + 0.35f * rng.uniform()) * direction;
     }
     const AdvectSteps steps =
-        choose_steps(params.lifetime, params.turbulence, params.turbulence_size);
+        choose_steps(params.lifetime, params.turbulence, params.turbulence_size, 16.0f);
     std::vector<Drag> drag_at(static_cast<size_t>(steps.count));
     for (size_t i = 0; i < drag_at.size(); ++i) {
         drag_at[i] =

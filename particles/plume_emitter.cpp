@@ -87,7 +87,7 @@ Emission emit_plume(const EmitterParams& params, double since_start)
     const Population population = steady_population(params, since_start, false);
     const PlumeFlow flow = make_flow(params, since_start);
     const AdvectSteps steps =
-        choose_steps(params.lifetime, params.turbulence, params.turbulence_size);
+        choose_steps(params.lifetime, params.turbulence, params.turbulence_size, 32.0f);
     // Eddies are carried upwards with the smoke; a fixed pattern would look like a grate.
     const CurlNoise noise = make_curl_noise({params.turbulence_size, params.turbulence,
                                              Vec3(0.0f, 0.6f * params.speed, 0.0f), params.seed},

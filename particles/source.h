@@ -24,9 +24,9 @@ struct EmitterParams {
     float lifetime = 4.0f;         ///< seconds from birth to death
     float turbulence = 0.5f;       ///< curl-noise speed [m/s]
     float turbulence_size = 0.5f;  ///< size of the largest curl-noise eddies [m]
-    float drag = 1.0f;             ///< velocity decay [1/s] (burst)
+    float drag = 1.0f;             ///< velocity decay [1/s] (burst); plume: what limits sinking
     float gravity = 0.0f;          ///< downward acceleration [m/s^2], along -y
-    float spread = 15.0f;          ///< half angle of the launch cone [degrees] (plume)
+    float spread = 15.0f;          ///< half angle at which a plume widens [degrees], [0, 80]
     float radius = 0.03f;          ///< kernel support radius of a particle [m]
     float radius_growth = 0.0f;    ///< added to the radius per second of age [m/s]
     float mass = 1.0f;             ///< total mass of the particles alive in a full frame [kg]
