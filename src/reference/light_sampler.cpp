@@ -126,9 +126,7 @@ void LightSampler::add_emitters(const Scene& scene, const PathTracerParams& para
 double LightSampler::importance(const Emitter& emitter, Vec3 x)
 {
     if (emitter.fluence > 0.0f) return static_cast<double>(emitter.fluence);
-    const Vec3d to_centre = Vec3d(emitter.bounds.centre()) - Vec3d(x);
-    const Vec3d half = 0.5 * Vec3d(emitter.bounds.extent());
-    const double distance2 = std::max(glm::dot(to_centre, to_centre), glm::dot(half, half));
+    const double distance2 = effective_distance2(emitter.bounds, x);
     return static_cast<double>(emitter.power) /
            (4.0 * std::numbers::pi * std::max(distance2, 1e-60));
 }

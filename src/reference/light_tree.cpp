@@ -4,18 +4,12 @@
 #include "core/error.h"
 
 namespace mote {
-namespace {
-
-/// Squared distance to the centre of a box, but no less than its half diagonal's square: inside,
-/// distances to the lights are unknown.
-double clamped_distance2(const Bounds3& bounds, Vec3 x)
+double effective_distance2(const Bounds3& bounds, Vec3 x)
 {
     const Vec3d to_centre = Vec3d(bounds.centre()) - Vec3d(x);
     const Vec3d half = 0.5 * Vec3d(bounds.extent());
-    return std::max(glm::dot(to_centre, to_centre), glm::dot(half, half));
+    return std::max(glm::dot(to_centre, to_centre), glm::dot(half, half) / 6.0);
 }
-
-}  // namespace
 
 LightTree::LightTree(std::vector<Item> items)
 {
@@ -73,8 +67,8 @@ double LightTree::left_probability(const Node& node, size_t index, Vec3 x) const
     const Node& left = nodes_[index + 1];
     const Node& right = nodes_[static_cast<size_t>(node.right)];
     // Power over squared distance, multiplied out so that a light at x itself is no special case.
-    const double l = static_cast<double>(left.power) * clamped_distance2(right.bounds, x);
-    const double r = static_cast<double>(right.power) * clamped_distance2(left.bounds, x);
+    const double l = static_cast<double>(left.power) * effective_distance2(right.bounds, x);
+    const double r = static_cast<double>(right.power) * effective_distance2(left.bounds, x);
     // The floor bounds the weight of lights that turn out to matter more than they seem to, behind
     // a thick cloud for example.
     constexpr double floor = 1e-5;
@@ -120,7 +114,7 @@ double LightTree::importance(Vec3 x) const
 {
     if (is_empty()) return 0.0;
     return static_cast<double>(nodes_[0].power) /
-           std::max(clamped_distance2(nodes_[0].bounds, x), 1e-60);
+           std::max(effective_distance2(nodes_[0].bounds, x), 1e-60);
 }
 
 }  // namespace mote

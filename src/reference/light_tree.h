@@ -7,6 +7,11 @@
 
 namespace mote {
 
+/// Squared distance [m^2] from x at which a light at one point gives what lights spread over a box
+/// give on average: to the box's centre, but no less than what holds at the centre of a cube, where
+/// the mean of 1/d^2 is about 6 over the squared half diagonal.
+[[nodiscard]] double effective_distance2(const Bounds3& bounds, Vec3 x);
+
 /// Binary tree over lights that chooses one at a point by walking down, at each node in proportion
 /// to power over squared distance. Cost: O(log lights). The probability of any light is
 /// reproducible, as MIS needs. After Conty Estevez and Kulla 2018, without orientation bounds.

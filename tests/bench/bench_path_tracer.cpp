@@ -1,6 +1,6 @@
 // CPU time and variance of the reference path tracer on scenes/plume_sun_sky: a plume of
 // 128 x 256 x 128 voxels, optical depth 8 through its middle, sun and sky, 480 x 270 pixels.
-//   bench_path_tracer [samples per pixel] [rounds]
+//   bench_path_tracer [samples per pixel] [rounds] [camera distance, 5.4]
 // One thread, process CPU time, camera rays included. Variants take turns in each round, so that
 // what else runs on the machine disturbs them alike; the time is the median of the rounds.
 // "rel. variance" is the per-sample variance of luminance, averaged over the image, over the
@@ -27,7 +27,7 @@ double cpu_seconds()
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-Scene plume_scene()
+Scene plume_scene(double camera_distance)
 {
     Volume volume;
     ProceduralParams params;
@@ -54,7 +54,7 @@ Scene plume_scene()
     scene.camera.width = 480;
     scene.camera.height = 270;
     scene.camera.tan_half_fov_y = 0.26795f;
-    scene.camera.world_from_camera.keys[0].translate = Vec3d(0.0, 0.0, 5.4);
+    scene.camera.world_from_camera.keys[0].translate = Vec3d(0.0, 0.0, camera_distance);
     return scene;
 }
 
@@ -64,6 +64,7 @@ struct Variant {
     std::vector<double> microseconds;  // per pixel and sample, one per round
     RunningStats pixel_mean;
     RunningStats pixel_variance;
+    RunningStats events;  // 1 for paths that scatter, else 0
 };
 
 void render(const Scene& scene, int samples, uint32_t round, Variant& variant)
@@ -80,6 +81,7 @@ void render(const Scene& scene, int samples, uint32_t round, Variant& variant)
                 const Ray ray = generate_ray(scene.camera, film, Vec2(0.5f), 0.0f);
                 const PathResult result = trace_path(scene, lights, variant.params, ray, rng);
                 stats.add(static_cast<double>(luminance(result.L())));
+                variant.events.add(result.depth < infinity ? 1.0 : 0.0);
             }
             variant.pixel_mean.add(stats.mean);
             variant.pixel_variance.add(stats.variance());
@@ -99,16 +101,16 @@ std::vector<Variant> make_variants()
         plain.light_strategy = LightStrategy::Mis;
         plain.light_sampler = LightSamplerKind::Power;
         plain.transmittance = TransmittanceKind::Ratio;
-        list.push_back({events + " plain: one light, MIS, ratio", plain, {}, {}, {}});
+        list.push_back({events + " plain: one light, MIS, ratio", plain, {}, {}, {}, {}});
         PathTracerParams params;
         params.max_bounces = max_bounces;
-        list.push_back({events + " default", params, {}, {}, {}});
+        list.push_back({events + " default", params, {}, {}, {}, {}});
         params.transmittance = TransmittanceKind::Ratio;
-        list.push_back({events + " ratio", params, {}, {}, {}});
+        list.push_back({events + " ratio", params, {}, {}, {}, {}});
         params.transmittance = TransmittanceKind::ResidualRatio;
-        list.push_back({events + " residual ratio", params, {}, {}, {}});
+        list.push_back({events + " residual ratio", params, {}, {}, {}, {}});
         params.transmittance = TransmittanceKind::Exact;
-        list.push_back({events + " exact", params, {}, {}, {}});
+        list.push_back({events + " exact", params, {}, {}, {}, {}});
     }
     return list;
 }
@@ -120,13 +122,14 @@ int main(int argc, char** argv)
 {
     const int samples = argc > 1 ? std::max(2, std::atoi(argv[1])) : 4;
     const int rounds = argc > 2 ? std::max(1, std::atoi(argv[2])) : 3;
-    const mote::Scene scene = mote::plume_scene();
+    const mote::Scene scene = mote::plume_scene(argc > 3 ? std::atof(argv[3]) : 5.4);
     std::vector<mote::Variant> variants = mote::make_variants();
     for (int round = 0; round < rounds; ++round) {
         for (mote::Variant& variant : variants) {
             mote::render(scene, samples, static_cast<uint32_t>(round), variant);
         }
     }
+    std::printf("%.1f %% of the paths scatter\n", 100.0 * variants[0].events.mean);
     std::printf("%-42s %10s %10s %14s %12s\n", "variant", "us/sample", "mean", "rel. variance",
                 "1/(us var)");
     for (mote::Variant& variant : variants) {
