@@ -38,6 +38,12 @@ float sanitized(float v)
     return v >= 0.0f && v <= std::numeric_limits<float>::max() ? v : 0.0f;
 }
 
+/// Active bits of the eight voxels of row x * 8 + y of a leaf.
+unsigned active_row(const Leaf& leaf, openvdb::Index row)
+{
+    return leaf.getValueMask().getWord<uint8_t>(row);
+}
+
 struct LeafScan {
     unsigned faces = 0;  ///< as BlockTable::mark wants them
     float uniform = 0.0f;
@@ -49,22 +55,25 @@ LeafScan scan(const Leaf& leaf)
 {
     LeafScan out;
     const float* data = leaf.buffer().data();
+    const float first = leaf.isValueOn(0) ? sanitized(data[0]) : 0.0f;
     bool is_uniform = true;
-    float first = 0.0f;
-    for (openvdb::Index i = 0; i < Leaf::SIZE; ++i) {
-        const float v = leaf.isValueOn(i) ? sanitize(data[i], out.report) : 0.0f;
-        if (i == 0) first = v;
-        is_uniform = is_uniform && v == first;
-        if (v == 0.0f) continue;
-        out.sum += static_cast<double>(v);
-        // Which lower neighbours this voxel reaches: every subset of its zero coordinates.
-        const unsigned zero_x = i / 64 == 0 ? 1u : 0u;
-        const unsigned zero_y = i / 8 % 8 == 0 ? 1u : 0u;
-        const unsigned zero_z = i % 8 == 0 ? 1u : 0u;
-        unsigned faces = 1u;
-        if (zero_x) faces |= faces << 1;
-        if (zero_y) faces |= faces << 2;
-        if (zero_z) faces |= faces << 4;
+    for (openvdb::Index row = 0; row < 64; ++row) {
+        const unsigned active = active_row(leaf, row);
+        bool any = false;
+        bool low = false;  // the voxel with z = 0
+        for (openvdb::Index z = 0; z < 8; ++z) {
+            const bool on = (active >> z & 1u) != 0u;
+            const float v = on ? sanitize(data[row * 8 + z], out.report) : 0.0f;
+            is_uniform = is_uniform && v == first;
+            out.sum += static_cast<double>(v);
+            any = any || v != 0.0f;
+            low = low || (z == 0 && v != 0.0f);
+        }
+        // Which lower neighbours the row reaches: every subset of its zero coordinates.
+        unsigned faces = any ? 1u : 0u;
+        if (low) faces |= 1u << 4;
+        if (row % 8 == 0) faces |= faces << 2;
+        if (row / 8 == 0) faces |= faces << 1;
         out.faces |= faces;
     }
     out.uniform = is_uniform ? first : BlockTable::varied;
@@ -210,11 +219,11 @@ void copy_node(const openvdb::FloatTree& tree, const openvdb::Coord& origin, Vec
                 std::fill_n(row, count.z, value);
                 continue;
             }
-            const auto first = static_cast<openvdb::Index>(x * 64 + y * 8);
-            const float* data = leaf->buffer().data() + first;
+            const auto row_number = static_cast<openvdb::Index>(x * 8 + y);
+            const unsigned active = active_row(*leaf, row_number);
+            const float* data = leaf->buffer().data() + row_number * 8;
             for (int z = 0; z < count.z; ++z) {
-                const bool on = leaf->isValueOn(first + static_cast<openvdb::Index>(z));
-                row[z] = on ? sanitized(data[z]) : 0.0f;
+                row[z] = (active >> z & 1u) != 0u ? sanitized(data[z]) : 0.0f;
             }
         }
     }
