@@ -7,6 +7,8 @@ namespace {
 constexpr std::array estimator_names = {"path"};
 constexpr std::array transmittance_names = {"ratio", "residual_ratio", "exact"};
 constexpr std::array light_sampler_names = {"auto", "power", "power_distance", "tree"};
+constexpr std::array light_strategy_names = {"auto", "mis", "next_event", "phase"};
+constexpr std::array mis_names = {"power", "balance"};
 constexpr std::array pixel_type_names = {"half", "float"};
 constexpr std::array compression_names = {"none", "zip", "zips", "piz"};
 constexpr std::array view_names = {"srgb", "filmic"};
@@ -193,6 +195,13 @@ void describe(FieldVisitor& v, PathTracerParams& path)
                   .doc = "How one of many lights is chosen: by power, by power over squared "
                          "distance, or by a tree; auto picks by their number"},
                  path.light_sampler, light_sampler_names);
+    visit_choice(v,
+                 {.key = "light_strategy",
+                  .doc = "Rays that find the lights: shadow rays (next_event), scattered rays "
+                         "(phase), or both weighted (mis); auto is mis where it pays"},
+                 path.light_strategy, light_strategy_names);
+    visit_choice(v, {.key = "mis", .doc = "Weights between the two kinds of rays"}, path.mis,
+                 mis_names);
     visit(v,
           {.key = "equiangular",
            .doc = "Sample the first distance towards near lights as well; for lights inside "

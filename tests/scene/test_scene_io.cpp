@@ -228,6 +228,8 @@ TEST(SceneHash, ChangesWithEveryValueOfThePicture)
         "render.path.transmittance=exact",
         "render.path.light_sampler=power",
         "render.path.equiangular=true",
+        "render.path.light_strategy=phase",
+        "render.path.mis=balance",
         "output.aovs=[\"Z\"]",
         "output.color_type=float",
         "volumes.0.procedural=plume",
