@@ -20,6 +20,7 @@
 #include "core/text.h"
 #include "image/exr.h"
 #include "image/png.h"
+#include "render/aov.h"
 #include "render/frame.h"
 #include "scene/prepare.h"
 
@@ -49,8 +50,9 @@ struct Run {
 
 PrepareNeeds needs_of(const SceneDescription& scene)
 {
-    const auto& aovs = scene.output.aovs;
-    return {std::find(aovs.begin(), aovs.end(), "motion") != aovs.end()};
+    PrepareNeeds needs;
+    needs.velocity = parse_aovs(scene.output.aovs).needs_motion();
+    return needs;
 }
 
 [[noreturn]] void throw_interrupted(int frame)

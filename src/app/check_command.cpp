@@ -1,0 +1,30 @@
+#include <fmt/format.h>
+
+#include "app/check_inputs.h"
+#include "app/commands.h"
+#include "app/frame_files.h"
+#include "app/frame_range.h"
+#include "app/image_metadata.h"
+#include "app/scene_options.h"
+#include "core/error.h"
+#include "scene/scene_io.h"
+
+namespace mote {
+
+void run_check(const CheckOptions& options)
+{
+    const SceneDescription scene = load_scene(options.scene, options.overrides);
+    const std::vector<int> frames = chosen_frames(options.frames, scene);
+    (void)frame_files(frames, scene.output.path, scene.output.preview);
+    const std::vector<std::string> problems = check_inputs(scene, frames);
+    if (!problems.empty()) {
+        throw Error(ExitCode::Input, fmt::format("{}", fmt::join(problems, "\n")));
+    }
+    fmt::print(
+        "{}: no mistakes found; frames {}, {} volumes, {} particle systems, {} lights, hash "
+        "{}\n",
+        scene.path, format_frames(frames), scene.volumes.size(), scene.particles.size(),
+        scene.lights.size(), scene_hash_text(scene));
+}
+
+}  // namespace mote
