@@ -44,23 +44,31 @@ float uniform_value(const BlockTable& blocks, int x, int y, int z)
 /// integrate a trilinear function exactly.
 BrickRange range_of(const float* v)
 {
-    BrickRange range{v[0], v[0], 0.0f};
-    double sum = 0.0;
+    // Nine columns side by side, so that the compiler can use vectors.
+    float min[stride];
+    float max[stride];
+    double sum[stride] = {};
+    std::copy_n(v, stride, min);
+    std::copy_n(v, stride, max);
     for (int x = 0; x < stride; ++x) {
         for (int y = 0; y < stride; ++y) {
             const double edge = (x % 8 == 0 ? 0.5 : 1.0) * (y % 8 == 0 ? 0.5 : 1.0);
             const float* row = v + (x * stride + y) * stride;
-            double row_sum = 0.5 * (static_cast<double>(row[0]) + static_cast<double>(row[8]));
-            for (int z = 1; z < 8; ++z) row_sum += static_cast<double>(row[z]);
             for (int z = 0; z < stride; ++z) {
-                range.min = std::min(range.min, row[z]);
-                range.max = std::max(range.max, row[z]);
+                min[z] = std::min(min[z], row[z]);
+                max[z] = std::max(max[z], row[z]);
+                sum[z] += edge * static_cast<double>(row[z]);
             }
-            sum += edge * row_sum;
         }
     }
-    const double mean = sum / 512.0;
-    range.mean = std::clamp(static_cast<float>(mean), range.min, range.max);
+    BrickRange range{min[0], max[0], 0.0f};
+    double total = 0.0;
+    for (int z = 0; z < stride; ++z) {
+        range.min = std::min(range.min, min[z]);
+        range.max = std::max(range.max, max[z]);
+        total += (z % 8 == 0 ? 0.5 : 1.0) * sum[z];
+    }
+    range.mean = std::clamp(static_cast<float>(total / 512.0), range.min, range.max);
     return range;
 }
 
