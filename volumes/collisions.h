@@ -13,7 +13,7 @@ namespace mote {
 }
 
 /// Expected tentative collisions in a brick from which its cells are integrated instead: some 10 to
-/// 20 cells of 13 ns against 30 to 45 ns for each dependent lookup. It also bounds the cost of
+/// 20 cells of 20 ns against 30 to 45 ns for each dependent lookup. It also bounds the cost of
 /// opaque media, where tentative collisions are closer together than floats are.
 inline constexpr float dense_span = 16.0f;
 
