@@ -13,7 +13,7 @@ struct PathResult {
     Spectrum indirect{0.0f};     ///< two and more
     Spectrum emission{0.0f};     ///< from emissive media straight to the camera
     Spectrum background{0.0f};   ///< environment and area lights seen through the media
-    float transmittance = 1.0f;  ///< unbiased estimate, camera to infinity
+    float transmittance = 1.0f;  ///< unbiased estimate (0 or 1), camera to infinity
     float depth = infinity;      ///< of the first collision [m]
     Spectrum albedo{0.0f};       ///< at the first collision
     bool truncated = false;      ///< max_bounces cut a path that could have gone on
@@ -21,8 +21,11 @@ struct PathResult {
     [[nodiscard]] Spectrum L() const { return direct + indirect + emission + background; }
 };
 
-/// Traces one path along a camera ray. Shares phase functions, lights and media walks with the
-/// rest of mote but no reservoir, resampling-MIS or shift code: it is the judge of those.
+/// Traces one path along a camera ray: up to params.max_bounces scattering events, each lit
+/// by one shadow ray and by the scattered ray, weighted by MIS. Unbiased for every choice of params
+/// but max_bounces itself. Lamps and the environment are seen by the camera through the media.
+/// Shares phase functions, lights and media walks with the rest of mote but no reservoir,
+/// resampling-MIS or shift code: it is the judge of those.
 [[nodiscard]] PathResult trace_path(const Scene& scene, const LightSampler& lights,
                                     const PathTracerParams& params, const Ray& ray, Rng& rng);
 

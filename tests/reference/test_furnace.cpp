@@ -42,7 +42,7 @@ TEST(Furnace, EveryPathBringsOneWithoutShadowRays)
 
 TEST(FurnaceStat, ShadowRaysAndMisBringOne)
 {
-    // 5 standard errors: a false alarm in 1.7 million seeds per case, 32 cases.
+    // 5 standard errors: a false alarm in 1.7 million seeds per case, 28 cases.
     for (const bool is_image : {false, true}) {
         for (const LightStrategy strategy : {LightStrategy::Mis, LightStrategy::NextEvent}) {
             for (const float depth : {1.0f, 10.0f}) {
