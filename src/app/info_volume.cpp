@@ -14,6 +14,7 @@ namespace {
 
 constexpr const char* float_types[] = {"float", "double"};
 constexpr const char* vector_types[] = {"vec3s", "vec3d"};
+constexpr const char* velocity_names[] = {"velocity", "vel", "v"};
 
 template <size_t N>
 bool is_one_of(const std::string& word, const char* const (&words)[N])
@@ -93,9 +94,9 @@ std::string describe_grid(const std::string& path, const GridInfo& grid, double 
                         range_text(
                             *values, [](const openvdb::Vec3f& v) { return v.length(); }, largest));
         const float edge = std::min({grid.voxel_size.x, grid.voxel_size.y, grid.voxel_size.z});
-        if (edge > 0.0f) {
+        if (edge > 0.0f && is_one_of(grid.name, velocity_names)) {
             text += fmt::format(
-                "  as velocity  largest displacement {:.3g} voxels per frame at {:g} fps\n",
+                "  speed        largest displacement {:.3g} voxels per frame at {:g} fps\n",
                 static_cast<double>(largest) / fps / static_cast<double>(edge), fps);
         }
     } else {

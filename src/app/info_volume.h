@@ -7,8 +7,8 @@
 namespace mote {
 
 /// Lines on one grid of a .vdb file: what its metadata say and, for scalar and vector grids, the
-/// range of its values; for vectors also the largest displacement per frame in voxels, as if they
-/// were velocities [m/s]. Reads the grid. Throws as read_grids.
+/// range of its values; for grids called velocity, vel or v [m/s] also the largest displacement per
+/// frame in voxels. Reads the grid. Throws as read_grids.
 [[nodiscard]] std::string describe_grid(const std::string& path, const GridInfo& grid, double fps);
 
 /// Whether the grid holds points, which the particle readers describe.

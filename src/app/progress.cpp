@@ -137,7 +137,7 @@ void Progress::finish(bool stopped)
     }
     if (style_ == ProgressStyle::None) return;
     if (style_ == ProgressStyle::Bar) terminal_.write("\r\x1b[K");
-    terminal_.write(fmt::format("{} of {} frames rendered{} in {}{}\n", done_, frame_count_,
+    terminal_.write(fmt::format("{} of {} frames done{} in {}{}\n", done_, frame_count_,
                                 skipped_ > 0 ? fmt::format(", {} already there", skipped_) : "",
                                 format_duration(terminal_.now() - start_),
                                 stopped ? ", stopped" : ""));

@@ -80,7 +80,7 @@ TEST(Progress, LogLinesAreRareAndTheLastFrameIsShown)
     EXPECT_GE(lines, 9);  // 50 s, one each 5 s
     EXPECT_LE(lines, 13);
     EXPECT_NE(recorder.text.find("(100/100) 100%"), std::string::npos);
-    EXPECT_NE(recorder.text.find("100 of 100 frames rendered in 50 s"), std::string::npos);
+    EXPECT_NE(recorder.text.find("100 of 100 frames done in 50 s"), std::string::npos);
 }
 
 TEST(Progress, TheBarStaysOnOneLineOfTheTerminal)

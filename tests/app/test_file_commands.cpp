@@ -1,0 +1,80 @@
+#include <gtest/gtest.h>
+
+#include "run_mote.h"
+#include "support/temp_folder.h"
+
+namespace mote {
+
+namespace {
+
+constexpr const char* dust_scene = R"(
+[[particles]]
+name = "dust"
+emitter = "snow"
+count = 500
+[[volumes]]
+particles = "dust"
+)";
+
+bool contains(const std::string& text, const std::string& part)
+{
+    return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST(FileCommands, CachedParticlesAreReadBackAndRasterised)
+{
+    const TempFolder folder;
+    folder.write("scene.toml", dust_scene);
+    const Finished cache =
+        run_mote(folder.path(), {"cache", "scene.toml", "--frames", "1-2", "--points", "p.####.vdb",
+                                 "--grids", "d.####.vdb"});
+    ASSERT_EQ(cache.exit_code, 0) << cache.err;
+    EXPECT_EQ(files_below(folder.path()),
+              (std::vector<std::string>{"d.0001.vdb", "d.0002.vdb", "p.0001.vdb", "p.0002.vdb",
+                                        "scene.toml"}));
+    const Finished points = run_mote(folder.path(), {"info", "p.####.vdb", "--frame", "2"});
+    EXPECT_EQ(points.exit_code, 0) << points.err;
+    EXPECT_TRUE(contains(points.out, "largest displacement")) << points.out;
+    const Finished grid = run_mote(folder.path(), {"info", "d.0001.vdb"});
+    EXPECT_TRUE(contains(grid.out, "grid \"density\": float, fog volume")) << grid.out;
+    // The points as a plain file sequence give the same kind of grid.
+    const Finished again =
+        run_mote(folder.path(), {"cache", "p.####.vdb", "--grids", "e.####.vdb"});
+    EXPECT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_EQ(run_mote(folder.path(), {"info", "e.0002.vdb"}).exit_code, 0);
+}
+
+TEST(FileCommands, CheckNamesMissingFilesAndGrids)
+{
+    const TempFolder folder;
+    folder.write("dust.toml", dust_scene);
+    ASSERT_EQ(
+        run_mote(folder.path(), {"cache", "dust.toml", "--frames", "1", "--grids", "d.####.vdb"})
+            .exit_code,
+        0);
+    folder.write("scene.toml", R"(
+[[volumes]]
+file = { path = "d.0001.vdb" }
+density_grid = "densty"
+[[volumes]]
+file = { path = "none.####.vdb" }
+)");
+    const Finished check = run_mote(folder.path(), {"check", "scene.toml"});
+    EXPECT_EQ(check.exit_code, 3);
+    EXPECT_TRUE(contains(check.err, "no grid \"densty\" (did you mean \"density\"?)")) << check.err;
+    EXPECT_TRUE(contains(check.err, "none.####.vdb")) << check.err;
+    EXPECT_EQ(run_mote(folder.path(), {"check", "dust.toml"}).exit_code, 0);
+}
+
+TEST(FileCommands, InfoRefusesOtherKindsOfFiles)
+{
+    const TempFolder folder;
+    folder.write("a.txt", "text");
+    const Finished info = run_mote(folder.path(), {"info", "a.txt"});
+    EXPECT_EQ(info.exit_code, 3);
+    EXPECT_TRUE(contains(info.err, ".vdb")) << info.err;
+}
+
+}  // namespace mote
