@@ -7,7 +7,7 @@ namespace mote {
 
 void run_schema(const SchemaOptions& options)
 {
-    fmt::print("{}", options.markdown ? scene_reference_markdown() : scene_schema_json() + "\n");
+    fmt::print("{}", options.markdown ? scene_reference_markdown() : scene_schema_json());
 }
 
 }  // namespace mote
