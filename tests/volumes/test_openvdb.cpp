@@ -311,6 +311,7 @@ TEST(GridIo, ReadsBackWhatItWrote)
 
 TEST(GridIo, MessagesNameFileGridAndRemedy)
 {
+    openvdb::initialize();  // point grids are made before anything of mote's is called
     const TemporaryFolder folder;
     const std::string path = folder.file("smoke.vdb");
     auto level_set =
