@@ -159,18 +159,18 @@ void check_keys(const CacheParams& params)
     }
 }
 
-bool is_wanted(Attribute attribute, const AttributeMask& mask)
+bool is_wanted(ParticleAttribute attribute, const AttributeMask& mask)
 {
     switch (attribute) {
-        case Attribute::Velocity:
+        case ParticleAttribute::Velocity:
             return mask.velocity;
-        case Attribute::Temperature:
+        case ParticleAttribute::Temperature:
             return mask.temperature;
-        case Attribute::Color:
+        case ParticleAttribute::Color:
             return mask.color;
-        case Attribute::Id:
+        case ParticleAttribute::Id:
             return mask.id;
-        case Attribute::Age:
+        case ParticleAttribute::Age:
             return mask.age;
         default:
             return true;
@@ -194,12 +194,12 @@ std::optional<Found> find(const std::string& file, const Finder& finder, const C
 
 }  // namespace
 
-const char* attribute_name(Attribute attribute)
+const char* attribute_name(ParticleAttribute attribute)
 {
     return usual_names()[static_cast<size_t>(attribute)].name;
 }
 
-int attribute_components(Attribute attribute)
+int attribute_components(ParticleAttribute attribute)
 {
     return usual_names()[static_cast<size_t>(attribute)].components;
 }
@@ -212,18 +212,18 @@ std::vector<Binding> bind_attributes(const std::string& file, std::span<const Fi
     std::vector<Binding> bindings;
     bool has_mass = false;
     for (int a = 0; a < attribute_count; ++a) {
-        const auto attribute = static_cast<Attribute>(a);
+        const auto attribute = static_cast<ParticleAttribute>(a);
         const UsualNames& names = usual_names()[static_cast<size_t>(a)];
         const auto found = find(file, finder, params, names);
-        if (!found && attribute == Attribute::Position) {
+        if (!found && attribute == ParticleAttribute::Position) {
             throw Error(ExitCode::Input,
                         fmt::format("{}: no positions; name them with attributes.position (three "
                                     "numbers); the file has {}",
                                     file, finder.list()));
         }
-        const bool is_spare = attribute == Attribute::Density && has_mass;
+        const bool is_spare = attribute == ParticleAttribute::Density && has_mass;
         if (!found || is_spare || !is_wanted(attribute, mask)) continue;
-        has_mass = has_mass || attribute == Attribute::Mass;
+        has_mass = has_mass || attribute == ParticleAttribute::Mass;
         for (int c = 0; c < names.components; ++c) {
             const auto at = static_cast<size_t>(c);
             bindings.push_back({attribute, c, found->field[at], found->component[at]});

@@ -10,14 +10,24 @@ namespace mote {
 
 /// What a column of a particle file means to mote. Density [kg/m^3] becomes mass with the volume
 /// of the particle's support ball, where the file has no masses.
-enum class Attribute { Position, Velocity, Radius, Mass, Density, Temperature, Color, Id, Age };
+enum class ParticleAttribute {
+    Position,
+    Velocity,
+    Radius,
+    Mass,
+    Density,
+    Temperature,
+    Color,
+    Id,
+    Age
+};
 inline constexpr int attribute_count = 9;
 
 /// mote's name for it, as used in CacheParams::attributes: "position", "velocity", ...
-[[nodiscard]] const char* attribute_name(Attribute attribute);
+[[nodiscard]] const char* attribute_name(ParticleAttribute attribute);
 
 /// 3 for positions, velocities and colours, 1 for the others.
-[[nodiscard]] int attribute_components(Attribute attribute);
+[[nodiscard]] int attribute_components(ParticleAttribute attribute);
 
 /// One named column of a file: a number, or a vector of numbers.
 struct FileField {
@@ -28,7 +38,7 @@ struct FileField {
 /// One number of each row: component `field_component` of field `field` is `component` of
 /// `attribute`.
 struct Binding {
-    Attribute attribute = Attribute::Position;
+    ParticleAttribute attribute = ParticleAttribute::Position;
     int component = 0;
     size_t field = 0;
     int field_component = 0;

@@ -21,9 +21,9 @@ T load(const unsigned char* bytes, bool is_big_endian)
     return value;
 }
 
-NumberKind number_kind(Attribute attribute, ScalarType type)
+NumberKind number_kind(ParticleAttribute attribute, ScalarType type)
 {
-    if (attribute != Attribute::Color) return NumberKind::Plain;
+    if (attribute != ParticleAttribute::Color) return NumberKind::Plain;
     if (type == ScalarType::U8) return NumberKind::Color8;
     return type == ScalarType::U16 ? NumberKind::Color16 : NumberKind::Plain;
 }
@@ -83,7 +83,7 @@ void store_row(const RowLayout& layout, const unsigned char* bytes, size_t row, 
             bytes + field.offset +
             static_cast<size_t>(binding.field_component) * scalar_size(field.type);
         const bool is_wide = field.type == ScalarType::I64 || field.type == ScalarType::U64;
-        if (binding.attribute == Attribute::Id && is_wide) {  // beyond what a double holds
+        if (binding.attribute == ParticleAttribute::Id && is_wide) {  // beyond what a double holds
             buffer.store_id(row, load<int64_t>(at, field.is_big_endian));
             continue;
         }

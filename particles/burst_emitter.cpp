@@ -45,7 +45,7 @@ Vec3 launch_velocity(const EmitterParams& params, const std::array<Vec3, puff_co
 
 }  // namespace
 
-Emission emit_burst(const EmitterParams& params, double since_start)
+EmissionPlan emit_burst(const EmitterParams& params, double since_start)
 {
     if (since_start >= double{params.lifetime}) return {};
     const auto age = static_cast<float>(since_start);

@@ -108,7 +108,7 @@ void store_row(TextRow& row, size_t index, const std::vector<std::vector<Binding
         }
         for (const Binding& binding : bindings) {
             int64_t id = 0;
-            if (binding.attribute == Attribute::Id && TextRow::parse(token, id)) {
+            if (binding.attribute == ParticleAttribute::Id && TextRow::parse(token, id)) {
                 buffer.store_id(index, id);
             } else {
                 buffer.store(binding, index, row.number(token), NumberKind::Plain);

@@ -44,7 +44,7 @@ void follow_orbit(const EmitterParams& params, double since_start, ParticleBlock
 
 }  // namespace
 
-Emission emit_disk(const EmitterParams& params, double since_start)
+EmissionPlan emit_disk(const EmitterParams& params, double since_start)
 {
     const Population population = steady_population(params, since_start, true);
     const CurlNoise noise = make_curl_noise(

@@ -49,7 +49,7 @@ void check(const EmitterParams& params)
     require(std::isfinite(params.start_time), "start_time must be finite");
 }
 
-Emission make_emission(const EmitterParams& params, double since_start)
+EmissionPlan make_emission(const EmitterParams& params, double since_start)
 {
     switch (params.kind) {
         case EmitterKind::Plume:
@@ -65,7 +65,7 @@ Emission make_emission(const EmitterParams& params, double since_start)
 }
 
 /// Mass share at this part of life; its mean over life is 1 - (fade_in + fade_out) / 2.
-float fade(const Emission& emission, float life)
+float fade(const EmissionPlan& emission, float life)
 {
     const float in = emission.fade_in > 0.0f ? smooth_step(life / emission.fade_in) : 1.0f;
     const float out =
@@ -85,7 +85,7 @@ void allocate(ParticleSet& set, size_t count, const AttributeMask& mask)
     if (mask.age) set.age.resize(count);
 }
 
-void store(const EmitterParams& params, const Emission& emission, const ParticleBlock& block,
+void store(const EmitterParams& params, const EmissionPlan& emission, const ParticleBlock& block,
            size_t lanes, float particle_mass, ParticleSet& set, size_t first)
 {
     for (size_t i = 0; i < lanes; ++i) {
@@ -126,7 +126,7 @@ ParticleSet emit_particles(const EmitterParams& params, double time_s, const Att
     ParticleSet set;
     const double since_start = time_s - double{params.start_time};
     if (!(since_start >= 0.0)) return set;
-    const Emission emission = make_emission(params, since_start);
+    const EmissionPlan emission = make_emission(params, since_start);
     const auto count = static_cast<size_t>(emission.count);
     allocate(set, count, mask);
     const float mean_fade =

@@ -58,7 +58,7 @@ using EmitBlock = std::function<void(ParticleBlock& block, size_t first)>;
 }
 
 /// Each kind: which particles there are, how mass fades, and what fills a block.
-struct Emission {
+struct EmissionPlan {
     int64_t count = 0;
     float fade_in = 0.0f;   ///< share of life over which mass grows
     float fade_out = 0.0f;  ///< share of life over which it vanishes
@@ -66,9 +66,9 @@ struct Emission {
     EmitBlock fill;
 };
 
-[[nodiscard]] Emission emit_plume(const EmitterParams& params, double since_start);
-[[nodiscard]] Emission emit_burst(const EmitterParams& params, double since_start);
-[[nodiscard]] Emission emit_disk(const EmitterParams& params, double since_start);
-[[nodiscard]] Emission emit_snow(const EmitterParams& params, double since_start);
+[[nodiscard]] EmissionPlan emit_plume(const EmitterParams& params, double since_start);
+[[nodiscard]] EmissionPlan emit_burst(const EmitterParams& params, double since_start);
+[[nodiscard]] EmissionPlan emit_disk(const EmitterParams& params, double since_start);
+[[nodiscard]] EmissionPlan emit_snow(const EmitterParams& params, double since_start);
 
 }  // namespace mote

@@ -82,7 +82,7 @@ PlumeFlow make_flow(const EmitterParams& params, double since_start)
 
 }  // namespace
 
-Emission emit_plume(const EmitterParams& params, double since_start)
+EmissionPlan emit_plume(const EmitterParams& params, double since_start)
 {
     const Population population = steady_population(params, since_start, false);
     const PlumeFlow flow = make_flow(params, since_start);

@@ -126,7 +126,7 @@ void parse_ascii_row(TextRow& row, const PlyElement& element, std::vector<double
 
 NumberKind number_kind(const Binding& binding, const PlyProperty& property)
 {
-    if (binding.attribute != Attribute::Color) return NumberKind::Plain;
+    if (binding.attribute != ParticleAttribute::Color) return NumberKind::Plain;
     if (property.type == ScalarType::U8) return NumberKind::Color8;
     return property.type == ScalarType::U16 ? NumberKind::Color16 : NumberKind::Plain;
 }

@@ -85,31 +85,31 @@ void PointBuffer::resize(size_t count)
 {
     for (const Binding& binding : bindings) {
         switch (binding.attribute) {
-            case Attribute::Position:
+            case ParticleAttribute::Position:
                 set.position.resize(count);
                 break;
-            case Attribute::Velocity:
+            case ParticleAttribute::Velocity:
                 set.velocity.resize(count);
                 break;
-            case Attribute::Radius:
+            case ParticleAttribute::Radius:
                 set.radius.resize(count);
                 break;
-            case Attribute::Mass:
+            case ParticleAttribute::Mass:
                 set.mass.resize(count);
                 break;
-            case Attribute::Density:
+            case ParticleAttribute::Density:
                 density.resize(count);
                 break;
-            case Attribute::Temperature:
+            case ParticleAttribute::Temperature:
                 set.temperature.resize(count);
                 break;
-            case Attribute::Color:
+            case ParticleAttribute::Color:
                 set.color.resize(count);
                 break;
-            case Attribute::Id:
+            case ParticleAttribute::Id:
                 set.id.resize(count);
                 break;
-            case Attribute::Age:
+            case ParticleAttribute::Age:
                 set.age.resize(count);
                 break;
         }
@@ -120,34 +120,34 @@ void PointBuffer::store(const Binding& binding, size_t row, double value, Number
 {
     const auto x = static_cast<float>(value);
     switch (binding.attribute) {
-        case Attribute::Position:
+        case ParticleAttribute::Position:
             set.position[row][binding.component] = x;
             break;
-        case Attribute::Velocity:
+        case ParticleAttribute::Velocity:
             set.velocity[row][binding.component] = x;
             break;
-        case Attribute::Radius:
+        case ParticleAttribute::Radius:
             set.radius[row] = x;
             break;
-        case Attribute::Mass:
+        case ParticleAttribute::Mass:
             set.mass[row] = x;
             break;
-        case Attribute::Density:
+        case ParticleAttribute::Density:
             density[row] = x;
             break;
-        case Attribute::Temperature:
+        case ParticleAttribute::Temperature:
             set.temperature[row] = x;
             break;
-        case Attribute::Color:
+        case ParticleAttribute::Color:
             set.color[row][binding.component] = static_cast<float>(to_linear(value, kind));
             break;
-        case Attribute::Id:
+        case ParticleAttribute::Id:
             if (std::abs(value) < 0x1p62)
                 set.id[row] = static_cast<int64_t>(value);
             else
                 set.position[row].x = std::numeric_limits<float>::quiet_NaN();  // to be dropped
             break;
-        case Attribute::Age:
+        case ParticleAttribute::Age:
             set.age[row] = x;
             break;
     }

@@ -13,9 +13,9 @@ namespace mote {
 
 namespace {
 
-size_t value_bytes(Attribute attribute)
+size_t value_bytes(ParticleAttribute attribute)
 {
-    if (attribute == Attribute::Id) return sizeof(int64_t);
+    if (attribute == ParticleAttribute::Id) return sizeof(int64_t);
     return sizeof(float) * static_cast<size_t>(attribute_components(attribute));
 }
 
@@ -29,13 +29,13 @@ size_t column_offset(int attribute, size_t capacity)
 {
     size_t offset = align(sizeof(SharedHeader));
     for (int a = 0; a < attribute; ++a) {
-        offset += align(capacity * value_bytes(static_cast<Attribute>(a)));
+        offset += align(capacity * value_bytes(static_cast<ParticleAttribute>(a)));
     }
     return offset;
 }
 
 template <class T>
-void copy_column(const SharedColumns& columns, Attribute attribute, std::vector<T>& to)
+void copy_column(const SharedColumns& columns, ParticleAttribute attribute, std::vector<T>& to)
 {
     if (to.empty()) return;
     std::memcpy(static_cast<void*>(to.data()), columns.column(attribute), to.size() * sizeof(T));
@@ -65,7 +65,7 @@ SharedHeader& SharedColumns::header() const
     return *static_cast<SharedHeader*>(start_);
 }
 
-char* SharedColumns::column(Attribute attribute) const
+char* SharedColumns::column(ParticleAttribute attribute) const
 {
     return static_cast<char*>(start_) + column_offset(static_cast<int>(attribute), capacity_);
 }
@@ -75,7 +75,7 @@ PointBuffer SharedColumns::to_buffer() const
     PointBuffer buffer;
     for (int a = 0; a < attribute_count; ++a) {
         if (!header().is_present[a]) continue;
-        const auto attribute = static_cast<Attribute>(a);
+        const auto attribute = static_cast<ParticleAttribute>(a);
         const int components = attribute_components(attribute);
         for (int c = 0; c < components; ++c) {
             buffer.bindings.push_back({attribute, c, buffer.fields.size(), c});
@@ -83,15 +83,15 @@ PointBuffer SharedColumns::to_buffer() const
         buffer.fields.push_back({header().field_names[a], components});
     }
     buffer.resize(header().count);
-    copy_column(*this, Attribute::Position, buffer.set.position);
-    copy_column(*this, Attribute::Velocity, buffer.set.velocity);
-    copy_column(*this, Attribute::Radius, buffer.set.radius);
-    copy_column(*this, Attribute::Mass, buffer.set.mass);
-    copy_column(*this, Attribute::Density, buffer.density);
-    copy_column(*this, Attribute::Temperature, buffer.set.temperature);
-    copy_column(*this, Attribute::Color, buffer.set.color);
-    copy_column(*this, Attribute::Id, buffer.set.id);
-    copy_column(*this, Attribute::Age, buffer.set.age);
+    copy_column(*this, ParticleAttribute::Position, buffer.set.position);
+    copy_column(*this, ParticleAttribute::Velocity, buffer.set.velocity);
+    copy_column(*this, ParticleAttribute::Radius, buffer.set.radius);
+    copy_column(*this, ParticleAttribute::Mass, buffer.set.mass);
+    copy_column(*this, ParticleAttribute::Density, buffer.density);
+    copy_column(*this, ParticleAttribute::Temperature, buffer.set.temperature);
+    copy_column(*this, ParticleAttribute::Color, buffer.set.color);
+    copy_column(*this, ParticleAttribute::Id, buffer.set.id);
+    copy_column(*this, ParticleAttribute::Age, buffer.set.age);
     return buffer;
 }
 

@@ -27,7 +27,7 @@ class SharedColumns {
 
     [[nodiscard]] size_t capacity() const { return capacity_; }
     [[nodiscard]] SharedHeader& header() const;
-    [[nodiscard]] char* column(Attribute attribute) const;
+    [[nodiscard]] char* column(ParticleAttribute attribute) const;
     /// Copies the present columns.
     [[nodiscard]] PointBuffer to_buffer() const;
 

@@ -42,7 +42,7 @@ void fall(const EmitterParams& params, double since_start, int64_t index, Partic
 
 }  // namespace
 
-Emission emit_snow(const EmitterParams& params, double since_start)
+EmissionPlan emit_snow(const EmitterParams& params, double since_start)
 {
     const CurlNoise noise = make_curl_noise(
         {params.turbulence_size, params.turbulence, Vec3(0.0f), params.seed}, since_start);

@@ -175,7 +175,8 @@ void visit_values(const AttributeArray& array, Store&& store)
 }
 
 /// Writes one attribute of a leaf into its column, from row `first` on.
-void fill_attribute(const AttributeArray& array, Attribute attribute, char* column, size_t first)
+void fill_attribute(const AttributeArray& array, ParticleAttribute attribute, char* column,
+                    size_t first)
 {
     auto* ids = reinterpret_cast<int64_t*>(column);
     auto* floats = reinterpret_cast<float*>(column);
@@ -190,7 +191,7 @@ void fill_attribute(const AttributeArray& array, Attribute attribute, char* colu
             }
         } else {
             if (components != 1) fail("damaged: a number where a vector was");
-            if (attribute != Attribute::Id)
+            if (attribute != ParticleAttribute::Id)
                 floats[row] = static_cast<float>(value);
             else if constexpr (std::is_same_v<Value, int64_t>)
                 ids[row] = value;
@@ -232,7 +233,7 @@ void fill_leaf(const PointDataTree::LeafNodeType& leaf, const openvdb::math::Tra
                              array.dataSize(), count));
         }
         char* column = columns.column(binding.attribute);
-        if (binding.attribute == Attribute::Position && name == "P") {
+        if (binding.attribute == ParticleAttribute::Position && name == "P") {
             if (array.type().first != "vec3s") fail("positions are not of type vec3s");
             fill_positions(leaf, world, column, first);
         } else {
