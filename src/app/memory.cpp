@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/sanitizers.h"
 #include "core/text.h"
 
 namespace mote {
@@ -40,7 +41,7 @@ size_t frame_buffer_memory(const SceneDescription& scene)
 
 void limit_allocations(double limit)
 {
-    if (limit <= 0.0) return;
+    if (limit <= 0.0 || !can_limit_memory) return;
     rlimit old{};
     getrlimit(RLIMIT_DATA, &old);
     const auto bytes = static_cast<rlim_t>(std::min(limit, 1e18));

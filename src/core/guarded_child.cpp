@@ -17,16 +17,11 @@
 #include <fmt/core.h>
 
 #include "core/error.h"
+#include "core/sanitizers.h"
 #include "core/text.h"
 
 namespace mote {
 namespace {
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool limit_address_space = false;  // sanitizers reserve terabytes of it
-#else
-constexpr bool limit_address_space = true;
-#endif
 
 /// Address space of this process now.
 int64_t mapped_bytes()
@@ -68,7 +63,7 @@ void send(int pipe_end, char kind, const char* text)
         std::signal(signal, SIG_DFL);
     set_limit(RLIMIT_CORE, 0, 0);
     set_limit(RLIMIT_CPU, limits.cpu_seconds, limits.cpu_seconds + 1);
-    if (limit_address_space) set_limit(RLIMIT_AS, address_space, address_space);
+    if (can_limit_memory) set_limit(RLIMIT_AS, address_space, address_space);
     const int null = open("/dev/null", O_WRONLY);  // readers print warnings: they are reported once
     if (null >= 0) {
         dup2(null, STDOUT_FILENO);

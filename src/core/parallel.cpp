@@ -10,14 +10,48 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include "core/sanitizers.h"
+
 namespace mote {
+
+namespace {
+
+/// Orders the chunks of a loop after what came before it, and what follows it after the chunks;
+/// chunks stay unordered among themselves, so that a race between them is still seen.
+struct LoopBorders {
+    HandOver begin;
+    HandOver end;
+};
+
+struct InsideChunk {
+    explicit InsideChunk(LoopBorders& loop) : borders(loop) { borders.begin.take(); }
+    ~InsideChunk() { borders.end.give(); }
+    InsideChunk(const InsideChunk&) = delete;
+    InsideChunk& operator=(const InsideChunk&) = delete;
+
+    LoopBorders& borders;
+};
+
+struct AroundLoop {
+    explicit AroundLoop(LoopBorders& loop) : borders(loop) { borders.begin.give(); }
+    ~AroundLoop() { borders.end.take(); }
+    AroundLoop(const AroundLoop&) = delete;
+    AroundLoop& operator=(const AroundLoop&) = delete;
+
+    LoopBorders& borders;
+};
+
+}  // namespace
 
 void parallel_for(size_t count, size_t grain, const std::function<void(size_t, size_t)>& f)
 {
     grain = std::max<size_t>(grain, 1);
     const size_t chunks = (count + grain - 1) / grain;
+    LoopBorders borders;
+    const AroundLoop around(borders);
     tbb::parallel_for(tbb::blocked_range<size_t>(0, chunks, 1),
                       [&](const tbb::blocked_range<size_t>& range) {
+                          const InsideChunk inside(borders);
                           for (size_t c = range.begin(); c != range.end(); ++c) {
                               f(c * grain, std::min(count, (c + 1) * grain));
                           }
