@@ -85,7 +85,9 @@ auto guarded(const std::string& what, F&& f) -> decltype(f())
     } catch (const std::bad_alloc&) {
         throw Error(ExitCode::Memory, fmt::format("{}: not enough memory to read it", what));
     } catch (const std::exception& e) {
-        throw Error(ExitCode::Input, fmt::format("{}: {}", what, printable(e.what())));
+        throw Error(ExitCode::Input,
+                    fmt::format("{}: damaged or of another format ({}); copy or write it again",
+                                what, printable(e.what())));
     }
 }
 
@@ -175,10 +177,15 @@ void check_choice(const std::string& path, const std::vector<GridInfo>& infos,
                                     [&](const GridInfo& info) { return info.name == wanted; });
     if (found == infos.end()) {
         std::vector<std::string> names;
-        for (const GridInfo& info : infos) names.push_back(info.name);
+        bool only_points = !infos.empty();
+        for (const GridInfo& info : infos) {
+            names.push_back(info.name);
+            only_points &= info.value_type.starts_with("ptdata");
+        }
         throw Error(ExitCode::Input,
-                    fmt::format("{}: no grid \"{}\"{}; it holds {}", path, printable(wanted),
-                                did_you_mean(wanted, names), list(infos)));
+                    fmt::format("{}: no grid \"{}\"{}; it holds {}{}", path, printable(wanted),
+                                did_you_mean(wanted, names), list(infos),
+                                only_points ? ". Points belong into a [[particles]] entry" : ""));
     }
     const std::string what = describe(path, wanted);
     if (found->grid_class == "level set") {

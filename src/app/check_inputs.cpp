@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "core/text.h"
+#include "image/read_image.h"
 #include "particles/sequence.h"
 #include "particles/source_info.h"
 #include "render/aov.h"
@@ -86,6 +87,34 @@ void require_file(const std::string& file, const std::string& base_dir, const st
     throw Error(ExitCode::Input, fmt::format("{}: no such file, used by {}", path.string(), user));
 }
 
+/// "light \"sun\"" or "light 2" for messages.
+std::string title(const char* kind, const std::string& name, size_t index)
+{
+    return name.empty() ? fmt::format("{} {}", kind, index) : fmt::format("{} \"{}\"", kind, name);
+}
+
+/// Volumes may ask for attributes that a particle file need not have.
+void require_attributes(const SceneDescription& scene, const ParticlesDescription& system,
+                        const std::string& path, const ParticleInfo& info, bool needs_velocity)
+{
+    const auto require = [&](const char* attribute, const char* user) {
+        for (const AttributeRange& range : info.attributes) {
+            if (range.name == attribute) return;
+        }
+        throw Error(ExitCode::Input,
+                    fmt::format("{}: particles \"{}\" have no {}, which {} needs; name the "
+                                "file's attribute under \"attributes\" or do without",
+                                path, system.name, attribute, user));
+    };
+    if (info.count == 0) return;
+    for (const VolumeDescription& volume : scene.volumes) {
+        if (volume.particles != system.name) continue;
+        if (volume.use_color) require("color", "\"use_color\"");
+        if (volume.emission.blackbody_scale > 0.0f) require("temperature", "blackbody emission");
+        if (needs_velocity) require("velocity", "the motion layer");
+    }
+}
+
 }  // namespace
 
 std::vector<std::string> check_inputs(const SceneDescription& scene, const std::vector<int>& frames)
@@ -97,7 +126,10 @@ std::vector<std::string> check_inputs(const SceneDescription& scene, const std::
         if (cache == nullptr) continue;
         const std::string first = check_sequence(cache->sequence, frames, scene.base_dir, problems);
         if (first.empty()) continue;
-        keep_message(problems, [&] { (void)describe_particle_file(first, *cache, scene.fps); });
+        keep_message(problems, [&] {
+            const ParticleInfo info = describe_particle_file(first, *cache, scene.fps);
+            require_attributes(scene, system, first, info, needs_velocity);
+        });
     }
     for (const VolumeDescription& volume : scene.volumes) {
         if (!volume.file) continue;
@@ -105,16 +137,18 @@ std::vector<std::string> check_inputs(const SceneDescription& scene, const std::
         if (first.empty()) continue;
         keep_message(problems, [&] { require_grids(first, needed_grids(volume, needs_velocity)); });
     }
-    for (const LightDescription& light : scene.lights) {
+    for (size_t i = 0; i < scene.lights.size(); ++i) {
+        const LightDescription& light = scene.lights[i];
         if (light.image.empty()) continue;
         keep_message(problems, [&] {
-            require_file(light.image, scene.base_dir, fmt::format("light \"{}\"", light.name));
+            require_file(light.image, scene.base_dir, title("light", light.name, i));
+            (void)read_image((std::filesystem::path(scene.base_dir) / light.image).string());
         });
     }
-    for (const MeshDescription& mesh : scene.meshes) {
-        keep_message(problems, [&] {
-            require_file(mesh.file, scene.base_dir, fmt::format("mesh \"{}\"", mesh.name));
-        });
+    for (size_t i = 0; i < scene.meshes.size(); ++i) {
+        const MeshDescription& mesh = scene.meshes[i];
+        keep_message(problems,
+                     [&] { require_file(mesh.file, scene.base_dir, title("mesh", mesh.name, i)); });
     }
     return problems;
 }

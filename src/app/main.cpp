@@ -58,7 +58,8 @@ int main(int argc, char** argv)
         return fail(error.code(), error.what());
     } catch (const std::bad_alloc&) {
         return fail(ExitCode::Memory,
-                    "out of memory; larger voxels, fewer particles or a smaller image need less");
+                    "out of memory, or over --memory-limit; larger voxels, fewer particles or a "
+                    "smaller image need less");
     } catch (const std::exception& error) {
         return fail(ExitCode::RenderFailed, "internal failure: " + printable(error.what()));
     } catch (...) {

@@ -76,8 +76,11 @@ void send(int pipe_end, char kind, const char* text)
         send(pipe_end, e.code() == ExitCode::Memory ? out_of_memory : failed, e.what());
     } catch (const std::bad_alloc&) {
         send(pipe_end, out_of_memory, "it asks for more memory than a file of its size can need");
-    } catch (const std::exception& e) {
-        send(pipe_end, failed, e.what());
+    } catch (const std::exception& e) {  // the library's own words say what, but not what to do
+        send(pipe_end, failed,
+             fmt::format("damaged or of another format ({}); copy or write it again",
+                         printable(e.what()))
+                 .c_str());
     } catch (...) {
         send(pipe_end, failed, "unknown failure");
     }

@@ -66,7 +66,7 @@ void check_content(const std::string& path, const Format& format)
     file.read(start.data(), start.size());
     const std::string_view read(start.data(), static_cast<size_t>(file.gcount()));
     if (!read.starts_with(format.magic)) {
-        fail(path, fmt::format("it is not a {} file, in spite of its name; check how it was made",
+        fail(path, fmt::format("it is no {} file, in spite of its name; check how it was made",
                                format.shown_name));
     }
     if (format.extension == ".exr") check_exr(path);

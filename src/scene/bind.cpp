@@ -159,8 +159,9 @@ bool NodeBinder::check_range(const Field& field, const Node& node, double value)
     const bool low = range.lo_open ? !(value > range.lo) : !(value >= range.lo);
     const bool high = range.hi_open ? !(value < range.hi) : !(value <= range.hi);
     if (!low && !high) return true;
+    // What is documented leaves out limits that nobody meets; here one has been met.
     std::string allowed = describe_range(field);
-    if (allowed.empty()) {
+    if (allowed.empty() || (high && value > 1e6)) {
         allowed = fmt::format("{} to {}", format_number(range.lo, field.is_float),
                               format_number(range.hi, field.is_float));
     }

@@ -21,8 +21,8 @@ void describe(FieldVisitor& v, SequenceParams& sequence)
           sequence.pattern);
     visit(v,
           {.key = "first",
-           .doc = "First frame on disk; with `last` below `first`, both are "
-                  "found by looking at the folder",
+           .doc = "First frame on disk; with `last` below `first`, the files found in the "
+                  "folder from `first` on make the sequence",
            .range = frame_range},
           sequence.first);
     visit(v, {.key = "last", .doc = "Last frame on disk", .range = frame_range}, sequence.last);

@@ -52,7 +52,7 @@ void describe(FieldVisitor& v, Emission& emission)
 {
     visit(v,
           {.key = "scale",
-           .doc = "Light per unit of the emission grid",
+           .doc = "Light per unit of the emission grid; without a file, of density",
            .unit = "1/m",
            .range = between(0, 1e12),
            .also = "emission_scale strength"},

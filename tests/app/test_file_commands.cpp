@@ -68,6 +68,44 @@ file = { path = "none.####.vdb" }
     EXPECT_EQ(run_mote(folder.path(), {"check", "dust.toml"}).exit_code, 0);
 }
 
+TEST(FileCommands, CheckOpensImagesAndLooksForTheAttributesInUse)
+{
+    const TempFolder folder;
+    folder.write("dust.csv", "x,y,z\n0,0,0\n1,0,0\n");
+    folder.write("sky.exr", "no image");
+    folder.write("scene.toml", R"(
+[[particles]]
+name = "dust"
+file = "dust.csv"
+[[volumes]]
+particles = "dust"
+use_color = true
+[[lights]]
+type = "environment"
+image = "sky.exr"
+)");
+    const Finished check = run_mote(folder.path(), {"check", "scene.toml"});
+    EXPECT_EQ(check.exit_code, 3);
+    EXPECT_TRUE(contains(check.err, "dust.csv: particles \"dust\" have no color")) << check.err;
+    EXPECT_TRUE(contains(check.err, "it is no OpenEXR file, in spite of its name")) << check.err;
+    EXPECT_EQ(run_mote(folder.path(), {"check", "scene.toml", "--set", "volumes.0.use_color=false",
+                                       "--set", "lights.0.image=\"\""})
+                  .exit_code,
+              0);
+    const Finished missing =
+        run_mote(folder.path(), {"check", "scene.toml", "--set", "lights.0.image=none.exr"});
+    EXPECT_TRUE(contains(missing.err, "no such file, used by light 0")) << missing.err;
+}
+
+TEST(FileCommands, ASheetIsAPng)
+{
+    const TempFolder folder;
+    const Finished sheet = run_mote(folder.path(), {"sheet", "a.jpg", "b.png"});
+    EXPECT_EQ(sheet.exit_code, 2);
+    EXPECT_TRUE(contains(sheet.err, "must end in .png")) << sheet.err;
+    EXPECT_TRUE(files_below(folder.path()).empty());
+}
+
 TEST(FileCommands, InfoRefusesOtherKindsOfFiles)
 {
     const TempFolder folder;

@@ -41,6 +41,8 @@ TEST(SceneErrors, NamePlaceKeyAndRemedy)
          "scene.toml:2:11: error: \"samples\" in [render] is 0, allowed: 1 to 1e7"},
         {"[render]\nseed = -1",
          "scene.toml:2:8: error: \"seed\" in [render] is -1, allowed: at least 0"},
+        {"[render]\nseed = 5000000000",
+         "scene.toml:2:8: error: \"seed\" in [render] is 5000000000, allowed: 0 to 4294967295"},
         {"[render]\npath = { equiangular = 1 }",
          "scene.toml:2:24: error: \"equiangular\" in [render.path] must be true or false, not a "
          "number"},
