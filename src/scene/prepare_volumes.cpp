@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 #include <openvdb/openvdb.h>
+#include <spdlog/spdlog.h>
 
 #include "core/error.h"
 #include "particles/rasterize.h"
@@ -122,6 +123,12 @@ void build(const ParticlesPlan& from, const GridPlan& plan, const std::vector<Pl
             }
             if (params.channels.color && particles.color.empty()) {
                 missing_attribute(system, "color", "\"use_color\"");
+            }
+            if (from.shutter_open_s != from.shutter_close_s && particles.velocity.empty()) {
+                spdlog::warn(
+                    "particles \"{}\": no velocities, so they do not blur along their motion; name "
+                    "the file's attribute under \"attributes\" if it has one",
+                    system.name);
             }
         }
         const Timer timer(stats.rasterize_seconds);

@@ -40,6 +40,18 @@ std::string read_text(const std::string& path)
     return text;
 }
 
+/// Volumes, particles and images handed over as scenes: their bytes make no helpful syntax error.
+void refuse_other_kinds(const std::string& path)
+{
+    const std::string extension = fs::path(path).extension().string();
+    for (const char* other : {".vdb", ".ply", ".csv", ".npy", ".exr", ".hdr", ".png"}) {
+        if (extension != other) continue;
+        throw Error(ExitCode::Input, fmt::format("{}: not a scene; scenes are .toml or .json files "
+                                                 "that name such files, see scenes/README.md",
+                                                 path));
+    }
+}
+
 Node parse_file(const std::string& path, const std::string& text)
 {
     const bool is_json = fs::path(path).extension() == ".json";
@@ -50,6 +62,7 @@ Node parse_file(const std::string& path, const std::string& text)
 
 SceneDescription load_scene(const std::string& path, const std::vector<std::string>& overrides)
 {
+    refuse_other_kinds(path);
     const std::string text = read_text(path);
     Problems problems(path, overrides);
     Node root;

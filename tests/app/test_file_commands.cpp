@@ -97,6 +97,34 @@ image = "sky.exr"
     EXPECT_TRUE(contains(missing.err, "no such file, used by light 0")) << missing.err;
 }
 
+TEST(FileCommands, MotionBlurWithoutVelocitiesIsSaid)
+{
+    const TempFolder folder;
+    folder.write("dust.csv", "x,y,z\n0,0,0\n");
+    folder.write("moving.csv", "x,y,z,vx,vy,vz\n0,0,0,1,0,0\n");
+    folder.write("scene.toml", R"(
+[camera]
+shutter_close = 0.5
+[render]
+width = 4
+height = 4
+samples = 1
+[[particles]]
+name = "dust"
+file = "dust.csv"
+[[volumes]]
+particles = "dust"
+)");
+    const auto render = [&](const char* override_) {
+        return run_mote(folder.path(), {"render", "scene.toml", "--set", override_});
+    };
+    const Finished still = render("particles.dust.file=dust.csv");
+    EXPECT_EQ(still.exit_code, 0) << still.err;
+    EXPECT_TRUE(contains(still.err, "particles \"dust\": no velocities")) << still.err;
+    EXPECT_FALSE(contains(render("particles.dust.file=moving.csv").err, "no velocities"));
+    EXPECT_FALSE(contains(render("camera.shutter_close=0").err, "no velocities"));
+}
+
 TEST(FileCommands, ASheetIsAPng)
 {
     const TempFolder folder;

@@ -209,6 +209,14 @@ TEST(SceneErrors, FilesThatCannotBeRead)
     } catch (const Error& error) {
         EXPECT_STREQ(error.what(), "/tmp: is a folder, not a scene file");
     }
+    try {
+        (void)load_scene("smoke.0001.vdb");
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_STREQ(error.what(),
+                     "smoke.0001.vdb: not a scene; scenes are .toml or .json files that name such "
+                     "files, see scenes/README.md");
+    }
     EXPECT_EQ(problems_of(std::string(4'000'001, '#')),
               "scene.toml: larger than 4.0 MB, so not a scene file");
 }
