@@ -114,7 +114,7 @@ void describe(FieldVisitor& v, ParticlesDescription& particles)
           {.key = "size",
            .doc = "Radius of the source; snow: half the box's edge",
            .unit = "m",
-           .range = between(0, 1e6),
+           .range = Range{0.0, 1e6, true, false},
            .used_by = "emitter"},
           emitter.size);
     visit(v,
@@ -163,7 +163,7 @@ void describe(FieldVisitor& v, ParticlesDescription& particles)
           {.key = "spread",
            .doc = "Half angle of the launch cone (plume)",
            .unit = "degrees",
-           .range = between(0, 180),
+           .range = between(0, 80),
            .used_by = "emitter"},
           emitter.spread);
     visit(v,

@@ -41,6 +41,11 @@ TEST(SceneErrors, NamePlaceKeyAndRemedy)
          "scene.toml:2:11: error: \"samples\" in [render] is 0, allowed: 1 to 1e7"},
         {"[render]\nseed = -1",
          "scene.toml:2:8: error: \"seed\" in [render] is -1, allowed: at least 0"},
+        // What an emitter cannot make is refused where it is written, not at the first frame.
+        {"[[particles]]\nname = \"p\"\nemitter = \"plume\"\nspread = 90",
+         "scene.toml:4:10: error: \"spread\" in [particles] is 90, allowed: 0 to 80 [degrees]"},
+        {"[[particles]]\nname = \"p\"\nemitter = \"plume\"\nsize = 0",
+         "scene.toml:4:8: error: \"size\" in [particles] is 0, allowed: above 0, at most 1e6 [m]"},
         {"[render]\nseed = 5000000000",
          "scene.toml:2:8: error: \"seed\" in [render] is 5000000000, allowed: 0 to 4294967295"},
         {"[render]\npath = { equiangular = 1 }",
