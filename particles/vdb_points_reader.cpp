@@ -246,7 +246,8 @@ void fill_leaf(const PointDataTree::LeafNodeType& leaf, const openvdb::math::Tra
 void read_into(const std::string& path, const PointRequest& request, uint64_t file_bytes,
                const SharedColumns& columns)
 {
-    const std::vector<PointDataGrid::Ptr> grids = read_point_grids(path);
+    // Never destroyed: freeing a tree is a parallel loop, and the process ends right after this.
+    const auto& grids = *new std::vector<PointDataGrid::Ptr>(read_point_grids(path));
     const size_t count = count_points(grids, columns.capacity(), file_bytes);
     SharedHeader& header = columns.header();
     header.count = count;

@@ -274,8 +274,9 @@ openvdb::GridPtrVec read_grids(const std::string& path, const std::vector<std::s
 {
     const std::vector<GridInfo> infos = list_grids(path, budget);
     for (const std::string& name : names) check_choice(path, infos, name, budget);
+    // Never destroyed: freeing a tree is a parallel loop, and the child ends right after this.
     check_in_child(path, checked_size(path, budget), names,
-                   [&] { static_cast<void>(read_raw(path, names)); });
+                   [&] { static_cast<void>(new openvdb::GridPtrVec(read_raw(path, names))); });
     openvdb::GridPtrVec grids = guarded(path, [&] { return read_raw(path, names); });
     for (size_t i = 0; i < grids.size(); ++i) {
         const std::string what = describe(path, names[i]);

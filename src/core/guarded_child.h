@@ -19,8 +19,9 @@ struct ChildLimits {
 /// The task must not use threads (TBB's workers do not exist in the child); its effects are lost.
 ///
 /// Forking a process with threads is safe here because the child touches nothing but malloc
-/// (glibc makes it usable after fork) and the reader. Should a lock of the C++ or OpenVDB run-time
-/// be held at the instant of the fork, the child would sleep: it is then stopped and tried again.
+/// (glibc makes it usable after fork) and the reader. Should a lock (of TBB, which even OpenVDB's
+/// destructors use) be held at the instant of the fork, the child would sleep: that is noticed
+/// after two seconds, and it is stopped and tried again.
 /// Cost: about 1 ms plus the task; page tables of the parent are copied (milliseconds per GB).
 void run_in_child(const std::string& what, const ChildLimits& limits,
                   const std::function<void()>& task);
