@@ -13,8 +13,8 @@ enum class OutsideRange { Hide, Hold, Loop };
 /// token is one file, shown at every frame.
 struct SequenceParams {
     std::string pattern;  ///< path, relative to the scene file
-    int first = 1;        ///< first frame of the sequence on disk
-    int last = 0;         ///< last frame; less than `first`: the files found in the folder
+    int first = 0;        ///< lowest frame of the sequence on disk
+    int last = -1;        ///< last frame; less than `first`: the files found in the folder
     int offset = 0;       ///< file frame = scene frame + offset
     OutsideRange outside = OutsideRange::Hold;
 };
