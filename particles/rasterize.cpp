@@ -304,9 +304,10 @@ ParticleGrids rasterize_checked(const ParticleSet& particles, const RasterizePar
 {
     openvdb::initialize();
     const RasterPlan plan = make_raster_plan(particles, params);
-    if (plan.unusable > 0) {
-        spdlog::warn("{} of {} particles left out: no mass, or values that are not finite",
-                     plan.unusable, particles.size());
+    if (plan.invalid > 0) {
+        spdlog::warn(
+            "{} of {} particles left out: negative masses or radii, or values that are not finite",
+            plan.invalid, particles.size());
     }
     const ChannelList channels = make_channels(particles, params.channels);
     std::vector<GridTile> tiles = fill_tiles(particles, plan, params, channels);

@@ -18,6 +18,7 @@ constexpr double largest_index = 2147483647.0 - 1024.0;
 struct BlockReport {
     double splats = 0.0;  ///< expected copies over tiles
     size_t unusable = 0;
+    size_t invalid = 0;     ///< of these, the ones that have a mass
     size_t bad = SIZE_MAX;  ///< first particle that cannot be rasterised
 };
 
@@ -81,6 +82,7 @@ BlockReport inspect(const ParticleSet& particles, const SplatRules& rules, size_
     for (size_t i = first; i < last; ++i) {
         if (!is_usable(particles, rules, i)) {
             ++report.unusable;
+            report.invalid += mass_of(particles, rules, i) == 0.0f ? 0 : 1;
             continue;
         }
         const float support = support_of(particles, rules, i);
@@ -174,7 +176,7 @@ RasterPlan make_raster_plan(const ParticleSet& particles, const RasterizeParams&
         if (blocks[b].bad != SIZE_MAX) {
             throw_bad_particle(particles, plan.rules, params, blocks[b].bad);
         }
-        plan.unusable += blocks[b].unusable;
+        plan.invalid += blocks[b].invalid;
         const size_t first = b * block_size;
         const size_t last = std::min(count, first + block_size);
         const double parts = std::clamp(std::ceil(blocks[b].splats / splats_per_chunk), 1.0,

@@ -20,7 +20,8 @@ struct RasterPlan {
     SplatRules rules;
     std::vector<ChunkRange> chunks;
     std::vector<size_t> wave_end;  ///< chunk number after the last chunk of each wave
-    size_t unusable = 0;           ///< particles left out, see is_usable
+    size_t invalid = 0;            ///< particles left out for a bad value, see is_usable; those
+                                   ///< of mass 0 (faded ones) are no fault and not counted
 };
 
 /// Checks the input and plans the work. Throws Error(Input) for a voxel size or position that the

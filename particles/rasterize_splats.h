@@ -62,8 +62,8 @@ struct SplatBatch {
 /// Rounds positions, splits them into cell and centre, and divides densities by lattice sums.
 void normalise(SplatBatch& batch);
 
-/// False for particles that cannot or need not contribute: massless, or with a value that is not
-/// finite or so large that sums of it could overflow.
+/// False for particles that cannot or need not contribute: of mass 0, or with a negative mass or
+/// radius, or a value that is not finite or so large that sums of it could overflow.
 [[nodiscard]] bool is_usable(const ParticleSet& particles, const SplatRules& rules, size_t i);
 
 /// Support radius [voxels] of particle i.

@@ -8,6 +8,7 @@
 #include "core/rng.h"
 #include "particles/kernel.h"
 #include "particles/rasterize.h"
+#include "particles/rasterize_plan.h"
 
 namespace mote {
 namespace {
@@ -224,8 +225,7 @@ TEST(Rasterize, IsBitIdenticalForAnyThreadCount)
     params.shutter_close_s = 0.02f;
     std::vector<ParticleGrids> runs;
     for (const int threads : {1, 2, 3, 8}) {
-        const ThreadLimit limit(threads);
-        runs.push_back(rasterize(set, params));
+        run_with_threads(threads, [&] { runs.push_back(rasterize(set, params)); });
     }
     for (const ParticleGrids& run : runs) {
         EXPECT_TRUE(same_bits(*run.density, *runs[0].density));
@@ -312,6 +312,21 @@ TEST(Rasterize, EmptyAndMasslessInputGivesAnEmptyGrid)
 {
     EXPECT_TRUE(rasterize({}, {}).density->empty());
     EXPECT_TRUE(rasterize(one_particle(Vec3(0.0f), 1.0f, 0.0f), {}).density->empty());
+}
+
+TEST(Rasterize, FadedParticlesAreNoFaultButBadValuesAre)
+{
+    // The log warns of what plan.invalid counts: here a negative and an endless mass, not the 0.
+    ParticleSet set = random_cloud(8, 1.0f, 0.1f, 0.2f, 2);
+    set.mass[0] = 0.0f;
+    EXPECT_EQ(make_raster_plan(set, voxels_of(0.1f)).invalid, 0u);
+    set.mass[1] = -1.0f;
+    set.mass[2] = infinity;
+    EXPECT_EQ(make_raster_plan(set, voxels_of(0.1f)).invalid, 2u);
+    const ParticleGrids grids = rasterize(set, voxels_of(0.1f));
+    double kept = 0.0;
+    for (size_t i = 3; i < 8; ++i) kept += static_cast<double>(set.mass[i]);
+    EXPECT_NEAR(mass_in(*grids.density), kept, 1e-5 * kept);
 }
 
 TEST(Rasterize, NonFiniteValuesNeverReachTheGrid)
