@@ -28,13 +28,12 @@ namespace mote {
 
 namespace {
 
-/// The renderer asks between tiles whether to stop, through a plain function; progress listens in.
+/// The renderer tells of finished tiles through a plain function.
 std::atomic<Progress*> listening_progress{nullptr};
 
-bool stop_between_tiles()
+void step_progress()
 {
     if (Progress* progress = listening_progress.load(std::memory_order_relaxed)) progress->step();
-    return stop_requested();
 }
 
 /// A whole run, so that the steps below need no long argument lists.
@@ -110,8 +109,8 @@ void render_one(const FrameFiles& files, Run& run, Progress& progress, FrameReco
     const int64_t steps = progress.steps_of_last_frame();
     progress.begin_frame(files.frame, steps > 0 ? steps : tiles);
     listening_progress = &progress;
-    LayeredImage image =
-        render_frame(frame, scene.render, scene.output, stop_between_tiles, record.render);
+    LayeredImage image = render_frame(frame, scene.render, scene.output, stop_requested,
+                                      record.render, step_progress);
     listening_progress = nullptr;
     if (image.channels.empty()) throw_interrupted(files.frame);
     if (record.render.dropped_non_finite > 0) {

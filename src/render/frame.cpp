@@ -21,6 +21,9 @@ struct FrameInputs {
     LightSampler lights;
 };
 
+/// Few enough that a stop takes effect at once, many enough that asking costs nothing.
+constexpr int samples_between_polls = 32;
+
 double process_cpu_seconds()
 {
     timespec t{};
@@ -72,7 +75,8 @@ FilmSample trace_sample(const FrameInputs& frame, int x, int y, uint32_t sample,
 }  // namespace
 
 LayeredImage render_frame(const Scene& scene, const RenderDescription& render,
-                          const OutputDescription& output, StopRequested stop, FrameStats& stats)
+                          const OutputDescription& output, StopRequested stop, FrameStats& stats,
+                          TileDone tile_done)
 {
     const auto start = std::chrono::steady_clock::now();
     const double cpu_start = process_cpu_seconds();
@@ -84,15 +88,18 @@ LayeredImage render_frame(const Scene& scene, const RenderDescription& render,
     std::atomic<int64_t> dropped{0};
     std::atomic<int64_t> truncated_paths{0};
 
+    const auto must_stop = [&] {
+        if (stop && stop()) stopped.store(true, std::memory_order_relaxed);
+        return stopped.load(std::memory_order_relaxed);
+    };
     for_each_tile(camera.width, camera.height, [&](const Tile& tile) {
-        if (stop && stop()) stopped = true;
-        if (stopped) return;
         int64_t tile_dropped = 0;
         int64_t tile_truncated = 0;
         for (int y = tile.y0; y < tile.y1; ++y) {
             for (int x = tile.x0; x < tile.x1; ++x) {
                 PixelFilm pixel;
                 for (int i = 0; i < render.samples; ++i) {
+                    if (i % samples_between_polls == 0 && must_stop()) return;
                     bool truncated = false;
                     const FilmSample sample =
                         trace_sample(frame, x, y, static_cast<uint32_t>(i), truncated);
@@ -104,6 +111,7 @@ LayeredImage render_frame(const Scene& scene, const RenderDescription& render,
         }
         dropped += tile_dropped;
         truncated_paths += tile_truncated;
+        if (tile_done) tile_done();
     });
 
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;

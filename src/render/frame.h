@@ -17,9 +17,12 @@ struct FrameStats {
     int64_t truncated_paths = 0;     ///< cut by max_bounces though they could have gone on
 };
 
-/// Called once per 16 x 16 tile by several threads, returns true to abandon the frame. May be
-/// null.
+/// Asked by several threads, at every pixel and every few samples, so it must be cheap; true
+/// abandons the frame. May be null.
 using StopRequested = bool (*)();
+
+/// Called by several threads after each 16 x 16 tile. May be null.
+using TileDone = void (*)();
 
 /// Renders one frame into a layered image holding RGBA and the layers of output.aovs (see aov.h),
 /// nothing else: layers not asked for are not computed. RGB is the mean over the pixel's square,
@@ -29,6 +32,6 @@ using StopRequested = bool (*)();
 /// its samples in order. Throws Error(Input) for unknown layers.
 [[nodiscard]] LayeredImage render_frame(const Scene& scene, const RenderDescription& render,
                                         const OutputDescription& output, StopRequested stop,
-                                        FrameStats& stats);
+                                        FrameStats& stats, TileDone tile_done = nullptr);
 
 }  // namespace mote

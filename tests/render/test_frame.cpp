@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -252,6 +253,21 @@ TEST(Frame, StopsBetweenTiles)
         cloudy_scene(), o.render, o.output, [] { return true; }, stats);
     EXPECT_TRUE(image.channels.empty());
     EXPECT_EQ(image.width, 0);
+}
+
+TEST(Frame, StopsWithinAPixel)
+{
+    // One pixel of so many samples that a look at the flag per pixel would come hours later.
+    static std::atomic<int> looks{0};
+    const Options o = options(2'000'000'000, 1, {});
+    Scene scene = cloudy_scene();
+    scene.camera.width = 1;
+    scene.camera.height = 1;
+    FrameStats stats;
+    const LayeredImage image = render_frame(
+        scene, o.render, o.output, [] { return ++looks > 3; }, stats);
+    EXPECT_TRUE(image.channels.empty());
+    EXPECT_EQ(looks, 4);
 }
 
 TEST(Frame, SceneFilesKnowTheSameLayers)
