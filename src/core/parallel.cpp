@@ -89,9 +89,11 @@ int available_threads()
 
 void run_with_threads(int count, const std::function<void()>& f)
 {
-    const ThreadLimit limit(count);
+    count = std::max(1, count);
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<size_t>(count));
     // The implicit arena has one slot per core, so a larger count needs an arena of its own.
-    tbb::task_arena arena(std::max(1, count));
+    tbb::task_arena arena(count);
     arena.execute([&] { f(); });
 }
 
@@ -100,18 +102,6 @@ int thread_limit()
     const size_t active =
         tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
     return std::min(available_threads(), static_cast<int>(std::min<size_t>(active, 1024)));
-}
-
-struct ThreadLimit::Impl {
-    explicit Impl(size_t count) : control(tbb::global_control::max_allowed_parallelism, count) {}
-    tbb::global_control control;
-};
-
-ThreadLimit::ThreadLimit(int count) : impl_(new Impl(static_cast<size_t>(std::max(1, count)))) {}
-
-ThreadLimit::~ThreadLimit()
-{
-    delete impl_;
 }
 
 }  // namespace mote

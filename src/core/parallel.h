@@ -29,18 +29,4 @@ void run_with_threads(int count, const std::function<void()>& f);
 /// Threads worth starting now beside TBB's: what is available, or a lower limit in force.
 [[nodiscard]] int thread_limit();
 
-/// Limits TBB to `count` threads while it lives (count >= 1). Cannot raise their number above the
-/// core count: run_with_threads does.
-class ThreadLimit {
-  public:
-    explicit ThreadLimit(int count);
-    ~ThreadLimit();
-    ThreadLimit(const ThreadLimit&) = delete;
-    ThreadLimit& operator=(const ThreadLimit&) = delete;
-
-  private:
-    struct Impl;
-    Impl* impl_;
-};
-
 }  // namespace mote

@@ -4,8 +4,6 @@
 #include <chrono>
 #include <csignal>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <thread>
 
 #include <fcntl.h>
@@ -13,6 +11,8 @@
 #include <unistd.h>
 
 #include <gtest/gtest.h>
+
+#include "support/temporary_folder.h"
 
 namespace mote {
 
@@ -108,14 +108,6 @@ std::vector<std::string> files_below(const std::string& folder)
     }
     std::sort(names.begin(), names.end());
     return names;
-}
-
-std::string read_bytes(const std::string& path)
-{
-    std::ifstream file(path, std::ios::binary);
-    std::ostringstream bytes;
-    bytes << file.rdbuf();
-    return bytes.str();
 }
 
 }  // namespace mote

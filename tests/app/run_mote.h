@@ -45,7 +45,4 @@ class RunningMote {
 /// Names of all files below a folder, hidden ones included, sorted.
 [[nodiscard]] std::vector<std::string> files_below(const std::string& folder);
 
-/// Bytes of a file; empty if there is none.
-[[nodiscard]] std::string read_bytes(const std::string& path);
-
 }  // namespace mote

@@ -9,7 +9,7 @@
 
 #include "image/exr.h"
 #include "run_mote.h"
-#include "support/temp_folder.h"
+#include "support/temporary_folder.h"
 #include "test_scene.h"
 
 namespace mote {
@@ -28,7 +28,7 @@ class Failures : public testing::Test {
         return run_mote(folder.path(), arguments);
     }
 
-    TempFolder folder;
+    TemporaryFolder folder;
 };
 
 bool contains(const std::string& text, const std::string& part)

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "run_mote.h"
-#include "support/temp_folder.h"
+#include "support/temporary_folder.h"
 
 namespace mote {
 
@@ -25,7 +25,7 @@ bool contains(const std::string& text, const std::string& part)
 
 TEST(FileCommands, CachedParticlesAreReadBackAndRasterised)
 {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     folder.write("scene.toml", dust_scene);
     const Finished cache =
         run_mote(folder.path(), {"cache", "scene.toml", "--frames", "1-2", "--points", "p.####.vdb",
@@ -48,7 +48,7 @@ TEST(FileCommands, CachedParticlesAreReadBackAndRasterised)
 
 TEST(FileCommands, CheckNamesMissingFilesAndGrids)
 {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     folder.write("dust.toml", dust_scene);
     ASSERT_EQ(
         run_mote(folder.path(), {"cache", "dust.toml", "--frames", "1", "--grids", "d.####.vdb"})
@@ -136,7 +136,7 @@ TEST(FileCommands, ASheetIsAPng)
 
 TEST(FileCommands, InfoRefusesOtherKindsOfFiles)
 {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     folder.write("a.txt", "text");
     const Finished info = run_mote(folder.path(), {"info", "a.txt"});
     EXPECT_EQ(info.exit_code, 3);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <sstream>
 
@@ -8,7 +9,7 @@
 #include "app/image_metadata.h"
 #include "image/exr.h"
 #include "run_mote.h"
-#include "support/temp_folder.h"
+#include "support/temporary_folder.h"
 #include "test_scene.h"
 
 namespace mote {
@@ -34,7 +35,7 @@ class RenderCommand : public testing::Test {
         return read_bytes(folder.file(name)) == "mark";
     }
 
-    TempFolder folder;
+    TemporaryFolder folder;
 };
 
 bool contains(const std::string& text, const std::string& part)
@@ -114,11 +115,42 @@ TEST_F(RenderCommand, VerifyRendersAgainWhatAnotherSceneMade)
     const Finished run = render({"--existing", "verify", "--stats", "s.json"});
     ASSERT_EQ(run.exit_code, 0) << run.err;
     const auto frames = nlohmann::json::parse(read_bytes(folder.file("s.json")))["frames"];
-    EXPECT_EQ(frames[0]["reason"], "complete, same scene");
+    EXPECT_EQ(frames[0]["reason"], "complete, same scene and inputs");
     EXPECT_EQ(frames[1]["reason"], "other scene");
     EXPECT_EQ(frames[2]["reason"], "other size");
     EXPECT_EQ(read_bytes(folder.file("out/0001.exr")), first);
     EXPECT_EQ(read_exr_header(folder.file("out/0003.exr")).width, 40);
+}
+
+TEST_F(RenderCommand, VerifyRendersAgainWhenAnInputFileChanged)
+{
+    const std::string cache = folder.write("points.csv", "x,y,z\n0,0,0\n0.2,0,0\n");
+    folder.write("scene.toml", puff_scene + R"(
+[[particles]]
+name = "points"
+file = "points.csv"
+[[volumes]]
+name = "sparks"
+particles = "points"
+)");
+    const auto reason = [&] {
+        const Finished run = render({"--frames", "1", "--existing", "verify", "--stats", "s.json"});
+        EXPECT_EQ(run.exit_code, 0) << run.err;
+        return nlohmann::json::parse(read_bytes(folder.file("s.json")))["frames"][0]["reason"];
+    };
+    const std::string kept = "complete, same scene and inputs";
+    EXPECT_EQ(reason(), "new");
+    EXPECT_EQ(reason(), kept);
+    std::filesystem::last_write_time(
+        cache, std::filesystem::last_write_time(cache) + std::chrono::seconds(2));
+    EXPECT_EQ(reason(), "input files changed");
+    EXPECT_EQ(reason(), kept);
+    // The same files from another folder.
+    const TemporaryFolder other;
+    const Finished elsewhere =
+        run_mote(other.path(), {"render", folder.file("scene.toml"), "--frames", "1", "--existing",
+                                "verify", "--output", folder.file("out/####.exr"), "--dry-run"});
+    EXPECT_TRUE(contains(elsewhere.out, kept)) << elsewhere.out << elsewhere.err;
 }
 
 TEST_F(RenderCommand, AKeptFrameStillGetsItsPreview)

@@ -86,12 +86,13 @@ double total(const openvdb::FloatGrid& grid)
 template <class F>
 void run(benchmark::State& state, F&& make)
 {
-    const ThreadLimit limit(static_cast<int>(state.range(2)));
     openvdb::FloatGrid::Ptr grid;
-    for (auto _ : state) {
-        grid.reset();
-        grid = make();
-    }
+    run_with_threads(static_cast<int>(state.range(2)), [&] {
+        for (auto _ : state) {
+            grid.reset();
+            grid = make();
+        }
+    });
     state.counters["active_M"] = static_cast<double>(grid->activeVoxelCount()) * 1e-6;
     state.counters["mass"] = total(*grid) / static_cast<double>(state.range(0));
     state.SetItemsProcessed(state.iterations() * state.range(0));

@@ -22,14 +22,15 @@ EmitterParams emitter(EmitterKind kind)
 
 void emit(benchmark::State& state)
 {
-    const ThreadLimit one(1);
     const EmitterParams params = emitter(static_cast<EmitterKind>(state.range(0)));
     int64_t particles = 0;
-    for (auto _ : state) {
-        const ParticleSet set = emit_particles(params, 3.9);
-        benchmark::DoNotOptimize(set.position.data());
-        particles += static_cast<int64_t>(set.size());
-    }
+    run_with_threads(1, [&] {
+        for (auto _ : state) {
+            const ParticleSet set = emit_particles(params, 3.9);
+            benchmark::DoNotOptimize(set.position.data());
+            particles += static_cast<int64_t>(set.size());
+        }
+    });
     state.SetItemsProcessed(particles);
     static const char* const names[] = {"plume", "burst", "disk", "snow"};
     state.SetLabel(names[state.range(0)]);

@@ -40,19 +40,19 @@ TEST(RngStat, NeighbouringStreamsAreUncorrelated)
 
 TEST(RngStat, UniformHasTheRightMoments)
 {
-    const RunningStats stats = test::run_trials(400'000, 11, [](Rng& rng) { return rng.uniform(); });
+    const RunningStats stats =
+        test::run_trials(400'000, 11, [](Rng& rng) { return rng.uniform(); });
     EXPECT_LT(std::abs(stats.mean - 0.5), 5.0 * stats.standard_error());
     EXPECT_NEAR(stats.variance(), 1.0 / 12.0, 5.0 * std::sqrt(1.0 / 180.0 / 400'000.0));
 }
 
 TEST(SamplingStat, ExponentialAndSphereHaveTheirMeans)
 {
-    const RunningStats exponential = test::run_trials(
-        200'000, 5, [](Rng& rng) { return sample_exponential(rng.uniform()); });
+    const RunningStats exponential =
+        test::run_trials(200'000, 5, [](Rng& rng) { return sample_exponential(rng.uniform()); });
     EXPECT_LT(std::abs(exponential.mean - 1.0), 5.0 * exponential.standard_error());
-    const RunningStats z = test::run_trials(200'000, 6, [](Rng& rng) {
-        return sample_sphere(rng.uniform2()).z;
-    });
+    const RunningStats z =
+        test::run_trials(200'000, 6, [](Rng& rng) { return sample_sphere(rng.uniform2()).z; });
     EXPECT_LT(std::abs(z.mean), 5.0 * z.standard_error());
 }
 

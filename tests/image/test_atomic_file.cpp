@@ -17,9 +17,6 @@
 namespace mote {
 namespace {
 
-using test::expect_error;
-using test::TemporaryFolder;
-
 void write_text(const std::string& path, const std::string& text)
 {
     write_atomically(path, [&](const std::string& temporary) {
@@ -80,73 +77,73 @@ LayeredImage noise_image(int size)
 TEST(AtomicFile, ReplacesTheFileAndLeavesNothingBehind)
 {
     const TemporaryFolder folder;
-    const std::string path = folder / "sub/folder/a.txt";
+    const std::string path = folder.file("sub/folder/a.txt");
     write_text(path, "old");
     write_text(path, "new");
-    EXPECT_EQ(test::read_bytes(path), "new");
-    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder / "sub/folder"), {}), 1);
+    EXPECT_EQ(read_bytes(path), "new");
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.file("sub/folder")), {}), 1);
 }
 
 TEST(AtomicFile, TemporaryIsInTheSameFolderAndKeepsTheExtension)
 {
     const TemporaryFolder folder;
-    write_atomically(folder / "frame.0001.exr", [&](const std::string& temporary) {
+    write_atomically(folder.file("frame.0001.exr"), [&](const std::string& temporary) {
         const std::filesystem::path name(temporary);
-        EXPECT_EQ(name.parent_path(), folder.path);
+        EXPECT_EQ(name.parent_path().string(), folder.path());
         EXPECT_EQ(name.filename().string(),
                   ".frame.0001." + std::to_string(::getpid()) + ".tmp.exr");
-        test::write_bytes(temporary, "x");
+        write_bytes(temporary, "x");
     });
 }
 
 TEST(AtomicFile, FailureInTheMiddleKeepsTheOldFile)
 {
     const TemporaryFolder folder;
-    const std::string path = folder / "a.exr";
+    const std::string path = folder.file("a.exr");
     write_text(path, "old");
     expect_error(
         [&] {
             write_atomically(path, [](const std::string& temporary) {
-                test::write_bytes(temporary, "half of the new");
+                write_bytes(temporary, "half of the new");
                 throw std::runtime_error("codec gave up");
             });
         },
         ExitCode::Output, {"a.exr", "codec gave up"});
-    EXPECT_EQ(test::read_bytes(path), "old");
-    EXPECT_EQ(folder.files().size(), 1u);
+    EXPECT_EQ(read_bytes(path), "old");
+    EXPECT_EQ(folder.entries().size(), 1u);
 }
 
 TEST(AtomicFile, RefusesFoldersAndSpecialFiles)
 {
     const TemporaryFolder folder;
-    const std::string inner = folder / "frames.exr";
+    const std::string inner = folder.file("frames.exr");
     std::filesystem::create_directory(inner);
     expect_error([&] { write_text(inner, "x"); }, ExitCode::Output, {"frames.exr", "is a folder"});
     expect_error([&] { write_text("/dev/null", "x"); }, ExitCode::Output, {"not a regular file"});
     EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
-    expect_error([&] { write_text(folder / "", "x"); }, ExitCode::Output, {"add a file name"});
+    expect_error([&] { write_text(folder.file(""), "x"); }, ExitCode::Output, {"add a file name"});
 }
 
 TEST(AtomicFile, PathUnderAFileNamesTheReason)
 {
     const TemporaryFolder folder;
-    test::write_bytes(folder / "plain", "x");
-    expect_error([&] { write_text(folder / "plain/a.exr", "x"); }, ExitCode::Output,
+    write_bytes(folder.file("plain"), "x");
+    expect_error([&] { write_text(folder.file("plain/a.exr"), "x"); }, ExitCode::Output,
                  {"plain/a.exr", "Not a directory", "choose another path"});
 }
 
 TEST(AtomicFile, FolderWithoutPermissionNamesTheReason)
 {
     const TemporaryFolder folder;
-    std::filesystem::create_directory(folder / "locked");
-    test::write_bytes(folder / "locked/a.txt", "old");
-    std::filesystem::permissions(folder / "locked", std::filesystem::perms(0555));
+    std::filesystem::create_directory(folder.file("locked"));
+    write_bytes(folder.file("locked/a.txt"), "old");
+    std::filesystem::permissions(folder.file("locked"), std::filesystem::perms(0555));
     // The superuser may write anywhere, so the child drops to an ordinary user.
     const int status = in_child([&] {
-        std::filesystem::permissions(folder.path, std::filesystem::perms(0755));
+        std::filesystem::permissions(folder.path(), std::filesystem::perms(0755));
         if (::getuid() == 0 && ::setuid(65534) != 0) return false;
         try {
-            write_text(folder / "locked/a.txt", "new");
+            write_text(folder.file("locked/a.txt"), "new");
         } catch (const Error& error) {
             const std::string message = error.what();
             return error.code() == ExitCode::Output &&
@@ -155,20 +152,20 @@ TEST(AtomicFile, FolderWithoutPermissionNamesTheReason)
         return false;
     });
     EXPECT_EQ(status, 0);
-    EXPECT_EQ(test::read_bytes(folder / "locked/a.txt"), "old");
-    std::filesystem::permissions(folder / "locked", std::filesystem::perms(0755));
+    EXPECT_EQ(read_bytes(folder.file("locked/a.txt")), "old");
+    std::filesystem::permissions(folder.file("locked"), std::filesystem::perms(0755));
 }
 
 TEST(AtomicFile, FileSizeLimitLeavesTheOldImages)
 {
     const TemporaryFolder folder;
-    const std::string exr = folder / "a.exr";
-    const std::string png = folder / "a.png";
+    const std::string exr = folder.file("a.exr");
+    const std::string png = folder.file("a.png");
     const Buffer2D<Spectrum> grey(64, 64, Spectrum(0.5f));
     write_exr(exr, noise_image(8), ExrCompression::None);
     write_png(png, grey, {});
-    const std::string old_exr = test::read_bytes(exr);
-    const std::string old_png = test::read_bytes(png);
+    const std::string old_exr = read_bytes(exr);
+    const std::string old_png = read_bytes(png);
     {
         const FileSizeLimit limit(60);  // bytes: less than either file
         expect_error([&] { write_exr(exr, noise_image(256), ExrCompression::Zip); },
@@ -176,27 +173,27 @@ TEST(AtomicFile, FileSizeLimitLeavesTheOldImages)
         expect_error([&] { write_png(png, grey, {}); }, ExitCode::Output,
                      {"a.png", "File too large"});
     }
-    EXPECT_EQ(test::read_bytes(exr), old_exr);
-    EXPECT_EQ(test::read_bytes(png), old_png);
-    EXPECT_EQ(folder.files().size(), 2u);
+    EXPECT_EQ(read_bytes(exr), old_exr);
+    EXPECT_EQ(read_bytes(png), old_png);
+    EXPECT_EQ(folder.entries().size(), 2u);
 }
 
 TEST(AtomicFile, FullDiskLeavesTheOldImage)
 {
     const TemporaryFolder folder;
-    const std::string disk = folder / "disk";
+    const std::string disk = folder.file("disk");
     std::filesystem::create_directory(disk);
     if (::mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=256k") != 0) {
         GTEST_SKIP() << "needs the right to mount";
     }
     const std::string path = disk + "/a.exr";
     write_exr(path, noise_image(64), ExrCompression::Zip);
-    const std::string old = test::read_bytes(path);
+    const std::string old = read_bytes(path);
     for (const ExrCompression compression : {ExrCompression::None, ExrCompression::Zip}) {
         expect_error([&] { write_exr(path, noise_image(1024), compression); }, ExitCode::Output,
                      {"a.exr", "No space left on device", "free some space"});
     }
-    EXPECT_EQ(test::read_bytes(path), old);
+    EXPECT_EQ(read_bytes(path), old);
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(disk), {}), 1);
     ::umount2(disk.c_str(), MNT_DETACH);
 }
@@ -210,12 +207,12 @@ TEST(AtomicFile, RemovesTemporariesOfDeadProcessesOnly)
         if (dead == 0) ::_exit(0);
         ::waitpid(dead, nullptr, 0);
     }
-    const std::string stale = folder / (".a." + std::to_string(dead) + ".tmp.exr");
-    const std::string living = folder / (".a." + std::to_string(::getppid()) + ".tmp.exr");
-    const std::string other = folder / (".ab." + std::to_string(dead) + ".tmp.exr");
-    const std::string user = folder / ".a.notes.tmp.exr";
-    for (const std::string& file : {stale, living, other, user}) test::write_bytes(file, "x");
-    write_text(folder / "a.exr", "new");
+    const std::string stale = folder.file(".a." + std::to_string(dead) + ".tmp.exr");
+    const std::string living = folder.file(".a." + std::to_string(::getppid()) + ".tmp.exr");
+    const std::string other = folder.file(".ab." + std::to_string(dead) + ".tmp.exr");
+    const std::string user = folder.file(".a.notes.tmp.exr");
+    for (const std::string& file : {stale, living, other, user}) write_bytes(file, "x");
+    write_text(folder.file("a.exr"), "new");
     EXPECT_FALSE(std::filesystem::exists(stale));
     EXPECT_TRUE(std::filesystem::exists(living));
     EXPECT_TRUE(std::filesystem::exists(other));

@@ -16,9 +16,6 @@
 namespace mote {
 namespace {
 
-using test::expect_error;
-using test::TemporaryFolder;
-
 /// 37 x 23 pixels, two half and two float channels of random values.
 LayeredImage test_image()
 {
@@ -51,8 +48,8 @@ TEST_P(ExrCompressions, RoundTripKeepsNamesTypesAndValues)
 {
     const TemporaryFolder folder;
     const LayeredImage written = test_image();
-    write_exr(folder / "a.exr", written, GetParam());
-    const LayeredImage read = read_exr(folder / "a.exr");
+    write_exr(folder.file("a.exr"), written, GetParam());
+    const LayeredImage read = read_exr(folder.file("a.exr"));
     ASSERT_EQ(read.width, 37);
     ASSERT_EQ(read.height, 23);
     ASSERT_EQ(read.channels.size(), written.channels.size());
@@ -79,9 +76,9 @@ TEST(Exr, RoundTripKeepsAttributes)
 {
     const TemporaryFolder folder;
     const LayeredImage written = test_image();
-    write_exr(folder / "a.exr", written, ExrCompression::Zip);
+    write_exr(folder.file("a.exr"), written, ExrCompression::Zip);
     for (const LayeredImage& read :
-         {read_exr(folder / "a.exr"), read_exr_header(folder / "a.exr")}) {
+         {read_exr(folder.file("a.exr")), read_exr_header(folder.file("a.exr"))}) {
         EXPECT_EQ(read.width, 37);
         EXPECT_EQ(read.channels.size(), 4u);
         for (const Attribute& attribute : written.attributes) {
@@ -111,8 +108,8 @@ TEST(Exr, FiniteValuesStayFiniteInHalf)
     LayeredImage image{2, 1, {{"R", PixelType::Half, Buffer2D<float>(2, 1)}}, {}};
     image.channels[0].data.at(0, 0) = 1e10f;
     image.channels[0].data.at(1, 0) = std::numeric_limits<float>::infinity();
-    write_exr(folder / "a.exr", image, ExrCompression::None);
-    const LayeredImage read = read_exr(folder / "a.exr");
+    write_exr(folder.file("a.exr"), image, ExrCompression::None);
+    const LayeredImage read = read_exr(folder.file("a.exr"));
     EXPECT_EQ(read.channels[0].data.at(0, 0), 65504.0f);
     EXPECT_TRUE(std::isinf(read.channels[0].data.at(1, 0)));
 }
@@ -123,9 +120,10 @@ TEST(Exr, BytesDoNotDependOnThreads)
     std::string bytes[3];
     const int threads[3] = {1, 2, 3};
     for (int i = 0; i < 3; ++i) {
-        const ThreadLimit limit(threads[i]);
-        write_exr(folder / "a.exr", test_image(), ExrCompression::Zip);
-        bytes[i] = test::read_bytes(folder / "a.exr");
+        run_with_threads(threads[i], [&] {
+            write_exr(folder.file("a.exr"), test_image(), ExrCompression::Zip);
+        });
+        bytes[i] = read_bytes(folder.file("a.exr"));
     }
     EXPECT_EQ(bytes[0], bytes[1]);
     EXPECT_EQ(bytes[0], bytes[2]);
@@ -134,17 +132,17 @@ TEST(Exr, BytesDoNotDependOnThreads)
 TEST(Exr, WrongFilesAreNamed)
 {
     const TemporaryFolder folder;
-    test::write_bytes(folder / "text.exr", "this is no image at all");
-    test::write_bytes(folder / "empty.exr", "");
-    expect_error([&] { (void)read_exr(folder / "none.exr"); }, ExitCode::Input,
+    write_bytes(folder.file("text.exr"), "this is no image at all");
+    write_bytes(folder.file("empty.exr"), "");
+    expect_error([&] { (void)read_exr(folder.file("none.exr")); }, ExitCode::Input,
                  {"none.exr", "No such file"});
-    expect_error([&] { (void)read_exr(folder / "text.exr"); }, ExitCode::Input,
+    expect_error([&] { (void)read_exr(folder.file("text.exr")); }, ExitCode::Input,
                  {"text.exr", "not an OpenEXR file"});
-    expect_error([&] { (void)read_exr(folder / "empty.exr"); }, ExitCode::Input,
+    expect_error([&] { (void)read_exr(folder.file("empty.exr")); }, ExitCode::Input,
                  {"empty.exr", "not an OpenEXR file"});
-    expect_error([&] { (void)read_exr(folder.path.string()); }, ExitCode::Input, {"is a folder"});
-    EXPECT_FALSE(is_complete_exr(folder / "none.exr"));
-    EXPECT_FALSE(is_complete_exr(folder / "text.exr"));
+    expect_error([&] { (void)read_exr(folder.path()); }, ExitCode::Input, {"is a folder"});
+    EXPECT_FALSE(is_complete_exr(folder.file("none.exr")));
+    EXPECT_FALSE(is_complete_exr(folder.file("text.exr")));
 }
 
 /// The file's bytes with the named header attribute's value replaced.
@@ -161,27 +159,28 @@ std::string patch(std::string bytes, const std::string& name, const void* value,
 TEST(Exr, HugeDataWindowsAreRefusedBeforeTheyAreAllocated)
 {
     const TemporaryFolder folder;
-    write_exr(folder / "a.exr", test_image(), ExrCompression::Zip);
-    const std::string good = test::read_bytes(folder / "a.exr");
+    write_exr(folder.file("a.exr"), test_image(), ExrCompression::Zip);
+    const std::string good = read_bytes(folder.file("a.exr"));
     const int32_t windows[][4] = {
         {0, 0, 0x7ffffffe, 0x7ffffffe},  {0, 0, 99999, 99999},  {0, 0, 8191, 8191},
         {-0x7fffffff, 0, 0x7ffffffe, 0}, {0, 0, 0, 0x0fffffff}, {5, 5, 4, 4}};
     for (const auto& window : windows) {
-        test::write_bytes(folder / "b.exr", patch(good, "dataWindow", window, sizeof window));
-        expect_error([&] { (void)read_exr(folder / "b.exr"); }, ExitCode::Input, {"b.exr"});
-        expect_error([&] { (void)read_exr_header(folder / "b.exr"); }, ExitCode::Input, {"b.exr"});
+        write_bytes(folder.file("b.exr"), patch(good, "dataWindow", window, sizeof window));
+        expect_error([&] { (void)read_exr(folder.file("b.exr")); }, ExitCode::Input, {"b.exr"});
+        expect_error([&] { (void)read_exr_header(folder.file("b.exr")); }, ExitCode::Input,
+                     {"b.exr"});
     }
 }
 
 TEST(Exr, CutFilesAreIncomplete)
 {
     const TemporaryFolder folder;
-    write_exr(folder / "a.exr", test_image(), ExrCompression::Zip);
-    EXPECT_TRUE(is_complete_exr(folder / "a.exr"));
-    const std::string good = test::read_bytes(folder / "a.exr");
+    write_exr(folder.file("a.exr"), test_image(), ExrCompression::Zip);
+    EXPECT_TRUE(is_complete_exr(folder.file("a.exr")));
+    const std::string good = read_bytes(folder.file("a.exr"));
     for (const size_t size : {good.size() - 1, good.size() / 2, good.size() / 8, size_t{100}}) {
-        test::write_bytes(folder / "b.exr", good.substr(0, size));
-        EXPECT_FALSE(is_complete_exr(folder / "b.exr")) << size;
+        write_bytes(folder.file("b.exr"), good.substr(0, size));
+        EXPECT_FALSE(is_complete_exr(folder.file("b.exr"))) << size;
     }
 }
 
@@ -196,8 +195,8 @@ TEST(Exr, MutatedFilesNeverCrashNorTakeMuchMemory)
                                     ExrCompression::Zips};
     std::string good[4];
     for (size_t k = 0; k < 4; ++k) {
-        write_exr(folder / "a.exr", test_image(), kinds[k]);
-        good[k] = test::read_bytes(folder / "a.exr");
+        write_exr(folder.file("a.exr"), test_image(), kinds[k]);
+        good[k] = read_bytes(folder.file("a.exr"));
     }
     for (uint32_t i = 0; i < mutations; ++i) {
         Rng rng(17, 0, Stream::Test, i, 0);
@@ -222,9 +221,9 @@ TEST(Exr, MutatedFilesNeverCrashNorTakeMuchMemory)
                     bytes[position(bytes.size())] = static_cast<char>(rng.next());
                 }
         }
-        test::write_bytes(folder / "b.exr", bytes);
+        write_bytes(folder.file("b.exr"), bytes);
         try {
-            (void)read_exr(folder / "b.exr");
+            (void)read_exr(folder.file("b.exr"));
         } catch (const Error& error) {
             ++refused;
             EXPECT_EQ(static_cast<int>(error.code()), static_cast<int>(ExitCode::Input))

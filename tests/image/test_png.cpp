@@ -15,9 +15,6 @@
 namespace mote {
 namespace {
 
-using test::expect_error;
-using test::TemporaryFolder;
-
 TEST(Color, SrgbKnownValues)
 {
     // IEC 61966-2-1: linear 0.0031308 is the end of the straight part; 0.5 is code 187.5 of 255.
@@ -62,8 +59,8 @@ TEST(Png, RoundTripIsWithinHalfACodeValue)
     Rng rng(1, 0, Stream::Test, 0, 0);
     for (Spectrum& s : image) s = rng.uniform3();
     image.at(0, 0) = {0.5f, 0.0f, 1.0f};
-    write_png(folder / "a.png", image, {0.0f, ViewTransform::Srgb});
-    const Buffer2D<Spectrum> read = read_png(folder / "a.png");
+    write_png(folder.file("a.png"), image, {0.0f, ViewTransform::Srgb});
+    const Buffer2D<Spectrum> read = read_png(folder.file("a.png"));
     ASSERT_EQ(read.width(), 31);
     ASSERT_EQ(read.height(), 17);
     for (int y = 0; y < 17; ++y) {
@@ -102,8 +99,8 @@ void write_png16(const std::string& path, const std::vector<uint16_t>& rgb)
 TEST(Png, SixteenBitsAreRoundedToEight)
 {
     const TemporaryFolder folder;
-    write_png16(folder / "a.png", {0, 32768, 65535, 1000, 20000, 50000});
-    const Buffer2D<Spectrum> read = read_png(folder / "a.png");
+    write_png16(folder.file("a.png"), {0, 32768, 65535, 1000, 20000, 50000});
+    const Buffer2D<Spectrum> read = read_png(folder.file("a.png"));
     ASSERT_EQ(read.width(), 2);
     const float expected[] = {0.0f, 32768.0f, 65535.0f, 1000.0f, 20000.0f, 50000.0f};
     for (int i = 0; i < 6; ++i) {
@@ -114,25 +111,27 @@ TEST(Png, SixteenBitsAreRoundedToEight)
 TEST(Png, DamagedFilesAreRefusedByName)
 {
     const TemporaryFolder folder;
-    write_png(folder / "a.png", Buffer2D<Spectrum>(40, 30, Spectrum(0.3f)), {});
-    const std::string good = test::read_bytes(folder / "a.png");
-    test::write_bytes(folder / "b.png", good.substr(0, good.size() / 2));
-    expect_error([&] { (void)read_png(folder / "b.png"); }, ExitCode::Input, {"b.png", "damaged"});
-    expect_error([&] { (void)read_png(folder / "none.png"); }, ExitCode::Input, {"No such file"});
-    test::write_bytes(folder / "c.png", "GIF89a");
-    expect_error([&] { (void)read_png(folder / "c.png"); }, ExitCode::Input, {"not a PNG"});
+    write_png(folder.file("a.png"), Buffer2D<Spectrum>(40, 30, Spectrum(0.3f)), {});
+    const std::string good = read_bytes(folder.file("a.png"));
+    write_bytes(folder.file("b.png"), good.substr(0, good.size() / 2));
+    expect_error([&] { (void)read_png(folder.file("b.png")); }, ExitCode::Input,
+                 {"b.png", "damaged"});
+    expect_error([&] { (void)read_png(folder.file("none.png")); }, ExitCode::Input,
+                 {"No such file"});
+    write_bytes(folder.file("c.png"), "GIF89a");
+    expect_error([&] { (void)read_png(folder.file("c.png")); }, ExitCode::Input, {"not a PNG"});
     std::string huge = good;  // width and height of the header chunk
     std::memcpy(huge.data() + 16, "\x00\x0f\x42\x40\x00\x0f\x42\x40", 8);
-    test::write_bytes(folder / "d.png", huge);
-    expect_error([&] { (void)read_png(folder / "d.png"); }, ExitCode::Input, {"d.png"});
+    write_bytes(folder.file("d.png"), huge);
+    expect_error([&] { (void)read_png(folder.file("d.png")); }, ExitCode::Input, {"d.png"});
     for (uint32_t i = 0; i < 200; ++i) {
         Rng rng(5, 0, Stream::Test, i, 0);
         std::string bytes = good;
         for (int k = 0; k < 4; ++k)
             bytes[rng.next() % bytes.size()] = static_cast<char>(rng.next());
-        test::write_bytes(folder / "e.png", bytes);
+        write_bytes(folder.file("e.png"), bytes);
         try {
-            (void)read_png(folder / "e.png");
+            (void)read_png(folder.file("e.png"));
         } catch (const Error& error) {
             EXPECT_EQ(static_cast<int>(error.code()), static_cast<int>(ExitCode::Input));
         }
@@ -145,11 +144,11 @@ TEST(ContactSheet, PlacesImagesInRows)
     const Spectrum colors[] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     std::vector<std::string> paths;
     for (int i = 0; i < 3; ++i) {
-        paths.push_back(folder / (std::to_string(i) + ".png"));
+        paths.push_back(folder.file(std::to_string(i) + ".png"));
         write_png(paths.back(), Buffer2D<Spectrum>(64, 32, colors[i]), {0.0f, ViewTransform::Srgb});
     }
-    make_contact_sheet(paths, {2, 20, 3}, folder / "sheet.png");
-    const Buffer2D<Spectrum> sheet = read_png(folder / "sheet.png");
+    make_contact_sheet(paths, {2, 20, 3}, folder.file("sheet.png"));
+    const Buffer2D<Spectrum> sheet = read_png(folder.file("sheet.png"));
     ASSERT_EQ(sheet.width(), 3 + 2 * 23);
     ASSERT_EQ(sheet.height(), 3 + 2 * 13);
     EXPECT_EQ(sheet.at(3, 3), colors[0]);
@@ -165,23 +164,24 @@ TEST(ContactSheet, ScalesByAreaMeanInLinearLight)
     for (int y = 0; y < 30; ++y) {
         for (int x = 0; x < 30; ++x) stripes.at(x, y) = Spectrum(x % 2 == 0 ? 1.0f : 0.0f);
     }
-    write_png(folder / "a.png", stripes, {0.0f, ViewTransform::Srgb});
-    make_contact_sheet({folder / "a.png"}, {1, 15, 0}, folder / "sheet.png");
+    write_png(folder.file("a.png"), stripes, {0.0f, ViewTransform::Srgb});
+    make_contact_sheet({folder.file("a.png")}, {1, 15, 0}, folder.file("sheet.png"));
     // A pair of stripes averages to 0.5, stored as code 188.
-    EXPECT_NEAR(read_png(folder / "sheet.png").at(7, 7).x, decode_srgb(188.0f / 255.0f), 1e-6f);
+    EXPECT_NEAR(read_png(folder.file("sheet.png")).at(7, 7).x, decode_srgb(188.0f / 255.0f), 1e-6f);
 }
 
 TEST(ContactSheet, NamesTheImageThatDiffers)
 {
     const TemporaryFolder folder;
-    write_png(folder / "a.png", Buffer2D<Spectrum>(8, 8), {});
-    write_png(folder / "b.png", Buffer2D<Spectrum>(8, 9), {});
+    write_png(folder.file("a.png"), Buffer2D<Spectrum>(8, 8), {});
+    write_png(folder.file("b.png"), Buffer2D<Spectrum>(8, 9), {});
     expect_error(
         [&] {
-            make_contact_sheet({folder / "a.png", folder / "b.png"}, {}, folder / "s.png");
+            make_contact_sheet({folder.file("a.png"), folder.file("b.png")}, {},
+                               folder.file("s.png"));
         },
         ExitCode::Input, {"b.png", "8 x 9"});
-    expect_error([&] { make_contact_sheet({}, {}, folder / "s.png"); }, ExitCode::Input,
+    expect_error([&] { make_contact_sheet({}, {}, folder.file("s.png")); }, ExitCode::Input,
                  {"no images"});
 }
 

@@ -14,9 +14,6 @@
 namespace mote {
 namespace {
 
-using test::expect_error;
-using test::TemporaryFolder;
-
 LayeredImage rgb_exr(const std::vector<std::string>& names)
 {
     LayeredImage image{5, 4, {}, {}};
@@ -33,8 +30,8 @@ TEST(ReadImage, ExrAsStored)
 {
     const TemporaryFolder folder;
     const LayeredImage exr = rgb_exr({"R", "G", "B", "A", "volume_direct.R"});
-    write_exr(folder / "a.EXR", exr, ExrCompression::Zip);
-    const Buffer2D<Spectrum> read = read_image(folder / "a.EXR");
+    write_exr(folder.file("a.EXR"), exr, ExrCompression::Zip);
+    const Buffer2D<Spectrum> read = read_image(folder.file("a.EXR"));
     ASSERT_EQ(read.width(), 5);
     ASSERT_EQ(read.height(), 4);
     for (int y = 0; y < 4; ++y) {
@@ -49,10 +46,11 @@ TEST(ReadImage, ExrAsStored)
 TEST(ReadImage, GreyExrFillsAllChannels)
 {
     const TemporaryFolder folder;
-    write_exr(folder / "a.exr", rgb_exr({"Y"}), ExrCompression::Zip);
-    EXPECT_EQ(read_image(folder / "a.exr").at(1, 0), Spectrum(0.5f));
-    write_exr(folder / "b.exr", rgb_exr({"P.X", "P.Y", "P.Z"}), ExrCompression::Zip);
-    expect_error([&] { (void)read_image(folder / "b.exr"); }, ExitCode::Input, {"no R, G and B"});
+    write_exr(folder.file("a.exr"), rgb_exr({"Y"}), ExrCompression::Zip);
+    EXPECT_EQ(read_image(folder.file("a.exr")).at(1, 0), Spectrum(0.5f));
+    write_exr(folder.file("b.exr"), rgb_exr({"P.X", "P.Y", "P.Z"}), ExrCompression::Zip);
+    expect_error([&] { (void)read_image(folder.file("b.exr")); }, ExitCode::Input,
+                 {"no R, G and B"});
 }
 
 TEST(ReadImage, PngIsDecodedFromSrgb)
@@ -61,9 +59,9 @@ TEST(ReadImage, PngIsDecodedFromSrgb)
     Buffer2D<Spectrum> image(9, 7);
     Rng rng(1, 0, Stream::Test, 0, 0);
     for (Spectrum& s : image) s = rng.uniform3();
-    write_png(folder / "a.png", image, {0.0f, ViewTransform::Srgb});
-    const Buffer2D<Spectrum> ours = read_png(folder / "a.png");
-    const Buffer2D<Spectrum> read = read_image(folder / "a.png");
+    write_png(folder.file("a.png"), image, {0.0f, ViewTransform::Srgb});
+    const Buffer2D<Spectrum> ours = read_png(folder.file("a.png"));
+    const Buffer2D<Spectrum> read = read_image(folder.file("a.png"));
     ASSERT_EQ(read.size(), ours.size());
     for (int y = 0; y < 7; ++y) {
         for (int x = 0; x < 9; ++x) {
@@ -78,8 +76,8 @@ TEST(ReadImage, RadianceHdrKnownValues)
     const TemporaryFolder folder;
     const std::string header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n";
     const std::string pixels("\x80\x40\x20\x81\x00\x00\x00\x00", 8);
-    test::write_bytes(folder / "a.hdr", header + pixels);
-    const Buffer2D<Spectrum> read = read_image(folder / "a.hdr");
+    write_bytes(folder.file("a.hdr"), header + pixels);
+    const Buffer2D<Spectrum> read = read_image(folder.file("a.hdr"));
     ASSERT_EQ(read.width(), 2);
     EXPECT_NEAR(read.at(0, 0).x, 1.0f, 0.005f);
     EXPECT_NEAR(read.at(0, 0).y, 0.5f, 0.005f);
@@ -94,9 +92,9 @@ TEST(ReadImage, ImpossibleRadianceIsCountedAndZero)
     image.channels[0].data.at(0, 0) = std::numeric_limits<float>::quiet_NaN();
     image.channels[1].data.at(1, 0) = std::numeric_limits<float>::infinity();
     image.channels[2].data.at(2, 0) = -1.0f;
-    write_exr(folder / "a.exr", image, ExrCompression::None);
+    write_exr(folder.file("a.exr"), image, ExrCompression::None);
     ImageReadReport report;
-    const Buffer2D<Spectrum> read = read_image(folder / "a.exr", &report);
+    const Buffer2D<Spectrum> read = read_image(folder.file("a.exr"), &report);
     EXPECT_EQ(report.non_finite, 2);
     EXPECT_EQ(report.negative, 1);
     EXPECT_EQ(read.at(0, 0).x, 0.0f);
@@ -106,40 +104,40 @@ TEST(ReadImage, ImpossibleRadianceIsCountedAndZero)
 TEST(ReadImage, OnlyListedFormatsByNameAndContent)
 {
     const TemporaryFolder folder;
-    write_png(folder / "a.png", Buffer2D<Spectrum>(2, 2), {});
-    const std::string png = test::read_bytes(folder / "a.png");
+    write_png(folder.file("a.png"), Buffer2D<Spectrum>(2, 2), {});
+    const std::string png = read_bytes(folder.file("a.png"));
     for (const char* name : {"a.exr", "a.hdr"}) {
-        test::write_bytes(folder / name, png);
-        expect_error([&] { (void)read_image(folder / name); }, ExitCode::Input,
+        write_bytes(folder.file(name), png);
+        expect_error([&] { (void)read_image(folder.file(name)); }, ExitCode::Input,
                      {name, "in spite of its name"});
     }
     for (const char* name : {"a.tga", "a.psd", "a.vdb", "a", "a.png.mp4"}) {
-        test::write_bytes(folder / name, png);
-        expect_error([&] { (void)read_image(folder / name); }, ExitCode::Input,
+        write_bytes(folder.file(name), png);
+        expect_error([&] { (void)read_image(folder.file(name)); }, ExitCode::Input,
                      {name, "only .exr, .hdr and .png"});
     }
-    expect_error([&] { (void)read_image(folder / "none.hdr"); }, ExitCode::Input,
+    expect_error([&] { (void)read_image(folder.file("none.hdr")); }, ExitCode::Input,
                  {"none.hdr", "No such file"});
 }
 
 TEST(ReadImage, MutatedFilesNeverCrash)
 {
     const TemporaryFolder folder;
-    write_exr(folder / "a.exr", rgb_exr({"R", "G", "B"}), ExrCompression::Zip);
-    write_png(folder / "a.png", Buffer2D<Spectrum>(20, 10, Spectrum(0.2f)), {});
-    test::write_bytes(folder / "a.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n" +
-                                            std::string(128, '\x81'));
+    write_exr(folder.file("a.exr"), rgb_exr({"R", "G", "B"}), ExrCompression::Zip);
+    write_png(folder.file("a.png"), Buffer2D<Spectrum>(20, 10, Spectrum(0.2f)), {});
+    write_bytes(folder.file("a.hdr"),
+                "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n" + std::string(128, '\x81'));
     int refused = 0;
     for (uint32_t i = 0; i < 150; ++i) {
         const std::string name = i % 3 == 0 ? "a.exr" : i % 3 == 1 ? "a.png" : "a.hdr";
         Rng rng(23, 0, Stream::Test, i, 0);
-        std::string bytes = test::read_bytes(folder / name);
+        std::string bytes = read_bytes(folder.file(name));
         if (i % 2 == 0) bytes.resize(rng.next() % bytes.size());
         for (int k = 0; k < 3 && !bytes.empty(); ++k) {
             bytes[rng.next() % bytes.size()] = static_cast<char>(rng.next());
         }
-        const std::string path = folder / ("b" + name);
-        test::write_bytes(path, bytes);
+        const std::string path = folder.file("b" + name);
+        write_bytes(path, bytes);
         try {
             (void)read_image(path);
         } catch (const Error& error) {

@@ -8,7 +8,8 @@
 #include "particles/emitter.h"
 #include "particles/source_info.h"
 #include "particles/write_points.h"
-#include "support/temp_folder.h"
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
 
 namespace mote {
 namespace {
@@ -29,7 +30,7 @@ void expect_sample(const ParticleSet& set)
     EXPECT_EQ(set.age, expected.age);
 }
 
-ParticleSet read(const TempFolder& folder, const std::string& name, const std::string& bytes,
+ParticleSet read(const TemporaryFolder& folder, const std::string& name, const std::string& bytes,
                  const CacheParams& params = {}, const AttributeMask& mask = {})
 {
     return read_particle_file(folder.write(name, bytes), params, fps, mask);
@@ -37,7 +38,7 @@ ParticleSet read(const TempFolder& folder, const std::string& name, const std::s
 
 TEST(Cache, PlyOfAllKindsGivesTheSameParticles)
 {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     expect_sample(read(folder, "a.ply", sample_ply(SamplePly::Ascii)));
     expect_sample(read(folder, "l.ply", sample_ply(SamplePly::Little)));
     expect_sample(read(folder, "b.ply", sample_ply(SamplePly::Big)));
@@ -45,7 +46,7 @@ TEST(Cache, PlyOfAllKindsGivesTheSameParticles)
 
 TEST(Cache, PlyWithWindowsLineEndsAndColoursOfBytes)
 {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const ParticleSet set = read(
         folder, "c.ply",
         "ply\r\nformat ascii 1.0\r\nelement vertex 1\r\nproperty float x\r\nproperty float y\r\n"
@@ -62,7 +63,7 @@ TEST(Cache, PlyWithWindowsLineEndsAndColoursOfBytes)
 
 TEST(Cache, CsvInItsDialects)
 {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     expect_sample(read(folder, "a.csv", sample_csv()));
     for (const char* text :
          {"x;y;z\n1;2;3\n", "x y  z\n 1\t2 3\n", "x\ty\tz\n1\t2\t3", "# x y z\n1 2 3\n",
@@ -81,7 +82,7 @@ TEST(Cache, CsvInItsDialects)
 
 TEST(Cache, NpyStructuredAndPlain)
 {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     expect_sample(read(folder, "l.npy", sample_npy(false)));
     expect_sample(read(folder, "b.npy", sample_npy(true)));
     std::string rows;
@@ -99,7 +100,7 @@ TEST(Cache, NpyStructuredAndPlain)
 
 TEST(Cache, AttributeNamesCanBeGivenOrTurnedOff)
 {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const std::string text = "x,y,z,a,b,c,size,Cd.r,Cd.g,Cd.b\n1,2,3,4,5,6,7,0,0,0\n";
     CacheParams params;
     params.attributes = {{"velocity", "a, b,c"}, {"radius", "size"}, {"color", ""}};
@@ -120,7 +121,7 @@ TEST(Cache, AttributeNamesCanBeGivenOrTurnedOff)
 
 TEST(Cache, UnitsAndDefaults)
 {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     CacheParams params;
     params.velocity_unit = VelocityUnit::PerFrame;
     params.scale = 0.01f;  // centimetres
@@ -139,7 +140,7 @@ TEST(Cache, UnitsAndDefaults)
 
 TEST(Cache, BadParticlesAreDropped)
 {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const ParticleSet set = read(folder, "a.csv",
                                  "x,y,z,radius,mass,id\nnan,0,0,1,1,0\n0,0,0,1,1,1\n0,inf,0,1,1,2\n"
                                  "0,0,0,-1,1,3\n0,0,0,0,1,4\n0,0,0,1,-1,5\n0,0,1e999,1,1,6\n"
@@ -149,7 +150,7 @@ TEST(Cache, BadParticlesAreDropped)
 
 TEST(Cache, OnlyWantedAttributesAreRead)
 {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const AttributeMask none{false, false, false, false, false};
     const ParticleSet set = read(folder, "a.ply", sample_ply(SamplePly::Big), {}, none);
     EXPECT_EQ(set.position, sample_particles().position);
@@ -158,8 +159,8 @@ TEST(Cache, OnlyWantedAttributesAreRead)
 }
 
 /// Message without the file's path and the ": " behind it.
-std::string failure(const TempFolder& folder, const std::string& name, const std::string& bytes,
-                    ExitCode code = ExitCode::Input)
+std::string failure(const TemporaryFolder& folder, const std::string& name,
+                    const std::string& bytes, ExitCode code = ExitCode::Input)
 {
     CacheParams params;
     params.max_particles = 1e6f;
@@ -179,7 +180,7 @@ const std::string xyz = "property float x\nproperty float y\nproperty float z\n"
 
 TEST(CacheErrors, Ply)
 {
-    const TempFolder f;
+    const TemporaryFolder f;
     EXPECT_EQ(failure(f, "a.ply", "plx\n"), "1:1: not a PLY file: the first line must be \"ply\"");
     EXPECT_EQ(failure(f, "a.ply", "ply\nformat asci 1.0\n"), "2:8: unknown format \"asci\"");
     EXPECT_EQ(failure(f, "a.ply", "ply\nformat ascii 2.0\n"), "2:14: unknown version \"2.0\"");
@@ -231,7 +232,7 @@ TEST(CacheErrors, Ply)
 
 TEST(CacheErrors, Csv)
 {
-    const TempFolder f;
+    const TemporaryFolder f;
     EXPECT_EQ(failure(f, "a.csv", ""), " no row of column names");
     EXPECT_EQ(failure(f, "a.csv", "\n1,2,3\n"),
               "2:1: numbers without names; the first row must name the columns, e.g. "
@@ -247,7 +248,7 @@ TEST(CacheErrors, Csv)
 
 TEST(CacheErrors, Npy)
 {
-    const TempFolder f;
+    const TemporaryFolder f;
     const auto plain = [](const std::string& descr, const std::string& shape) {
         return npy_file(
             "{'descr': " + descr + ", 'fortran_order': False, 'shape': " + shape + ", }",
@@ -286,7 +287,7 @@ TEST(CacheErrors, Npy)
 
 TEST(CacheErrors, Files)
 {
-    const TempFolder f;
+    const TemporaryFolder f;
     const auto message = [](const std::string& path) {
         return error_message([&] { (void)read_particle_file(path, {}, fps); });
     };
@@ -301,7 +302,7 @@ TEST(CacheErrors, Files)
 
 TEST(Source, FractionalFramesMoveAlongTheVelocity)
 {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     folder.write("s.0001.csv", "x,y,z,vx,vy,vz,age\n0,0,0,24,0,0,1\n");
     folder.write("s.0002.csv", "x,y,z,vx,vy,vz,age\n1,0,0,24,0,0,2\n");
     CacheParams cache;
@@ -327,7 +328,7 @@ TEST(Source, FractionalFramesMoveAlongTheVelocity)
 
 TEST(Source, VersionChangesExactlyWithTheParticles)
 {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     folder.write("s.1.csv", "x,y,z\n0,0,0\n");
     folder.write("s.2.csv", "x,y,z\n1,0,0\n");
     CacheParams cache;
@@ -358,7 +359,7 @@ TEST(Source, VersionChangesExactlyWithTheParticles)
 
 TEST(SourceInfo, DescribesCountRangesAndSpeed)
 {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const ParticleInfo info = describe_particle_file(folder.write("a.csv", sample_csv()));
     EXPECT_EQ(info.count, 3);
     EXPECT_EQ(info.bounds.lo, Vec3(0.5f, -3.5f, -2.0f));

@@ -9,7 +9,8 @@
 #include "particles/cache_samples.h"
 #include "particles/emitter.h"
 #include "particles/write_points.h"
-#include "support/temp_folder.h"
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
 
 namespace mote {
 namespace {
@@ -20,7 +21,7 @@ using openvdb::points::PointDataGrid;
 // is stored as it is.
 TEST(CacheVdb, AnEmitterSurvivesTheRoundTrip)
 {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     EmitterParams params;
     params.count = 20'000;
     params.cooling = 1.0f;
@@ -47,7 +48,7 @@ TEST(CacheVdb, AnEmitterSurvivesTheRoundTrip)
 
 TEST(CacheVdb, SmallSetsAndMissingAttributes)
 {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const std::string path = folder.file("a.vdb");
     write_points(path, sample_particles());
     const ParticleSet set = read_particle_file(path, {}, 24.0);
@@ -98,7 +99,7 @@ PointDataGrid::Ptr coded_grid(const char* name, double voxel_size)
 TEST(CacheVdb, CompressedCodecsAndSeveralGrids)
 {
     openvdb::initialize();
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const std::string path = folder.file("coded.vdb");
     auto fog = openvdb::FloatGrid::create();
     fog->setName("density");
@@ -122,7 +123,7 @@ TEST(CacheVdb, CompressedCodecsAndSeveralGrids)
 TEST(CacheVdb, EveryErrorNamesTheFile)
 {
     openvdb::initialize();
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const std::string path = folder.file("a.vdb");
     const auto message = [&](const CacheParams& params, ExitCode code = ExitCode::Input) {
         return error_message([&] { (void)read_particle_file(path, params, 24.0); }, code);

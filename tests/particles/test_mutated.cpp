@@ -6,12 +6,13 @@
 
 #include <gtest/gtest.h>
 
+#include "core/error.h"
 #include "core/rng.h"
 #include "particles/cache.h"
 #include "particles/cache_samples.h"
 #include "particles/emitter.h"
 #include "particles/write_points.h"
-#include "support/temp_folder.h"
+#include "support/temporary_folder.h"
 
 // Damaged files end in particles or in one Error that names the file; nothing crashes, hangs (the
 // test's own time limit) or asks for memory out of proportion to the file.
@@ -48,7 +49,7 @@ struct Outcome {
 
 Outcome read_damaged(const std::string& name, const std::string& whole, uint32_t trials)
 {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     Outcome outcome;
     for (uint32_t trial = 0; trial < trials; ++trial) {
         const std::string path = folder.write(name, damage(whole, trial));
@@ -77,7 +78,7 @@ long peak_kilobytes()
 
 std::string points_file(const ParticleSet& set)
 {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     write_points(folder.file("p.vdb"), set);
     std::ifstream in(folder.file("p.vdb"), std::ios::binary);
     std::stringstream bytes;

@@ -2,7 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "support/temp_folder.h"
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
 
 namespace mote {
 namespace {
@@ -48,7 +49,7 @@ TEST(Sequence, OffsetAndWhatLiesOutside)
 
 TEST(Sequence, RangeIsFoundInTheFolder)
 {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     for (const char* name : {"s.1001.vdb", "s.1002.vdb", "s.1004.vdb", "s.12.vdb", "s.01005.vdb",
                              "t.2000.vdb", "s.1005.ply", "s.x.vdb"}) {
         folder.write(name, "x");
@@ -64,7 +65,7 @@ TEST(Sequence, RangeIsFoundInTheFolder)
 
 TEST(Sequence, EveryErrorNamesTheFile)
 {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     folder.write("s.0001.vdb", "x");
     folder.write("s.0003.vdb", "x");
     EXPECT_EQ(

@@ -80,16 +80,16 @@ TEST(Determinism, PathsDependOnTheirKeyAloneForAnyThreadCount)
     params.max_bounces = 20;
     const LightSampler lights = build_light_sampler(scene, params);
     const auto render = [&](int threads) {
-        const ThreadLimit limit(threads);
         std::vector<Spectrum> pixels(2000);
-        parallel_for(pixels.size(), 7, [&](size_t begin, size_t end) {
+        const auto trace = [&](size_t begin, size_t end) {
             for (size_t i = begin; i < end; ++i) {
                 Rng rng(5, 3, Stream::Path, static_cast<uint32_t>(i), 0);
                 const Ray ray{Vec3(-3.0f, rng.uniform() - 0.5f, rng.uniform() - 0.5f),
                               Vec3(1.0f, 0.0f, 0.0f), 0.0f};
                 pixels[i] = trace_path(scene, lights, params, ray, rng).L();
             }
-        });
+        };
+        run_with_threads(threads, [&] { parallel_for(pixels.size(), 7, trace); });
         return pixels;
     };
     const std::vector<Spectrum> one = render(1);

@@ -162,7 +162,7 @@ TEST(Aov, TableIsInTheOrderOfTheEnumWithDistinctNames)
 
 TEST(Aov, UnknownNamesSuggestTheNearest)
 {
-    test::expect_error(
+    expect_error(
         [] {
             (void)parse_aovs({"Z", "albdeo"});
         },

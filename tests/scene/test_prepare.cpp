@@ -220,8 +220,9 @@ TEST(Prepare, SaysWhatIsMissing)
                        "blackbody_scale = 1 }")
                   .find("emission.temperature_offset"),
               std::string::npos);
-    const test::TemporaryFile csv("points.csv", "x,y,z\n0,0,0\n");
-    EXPECT_NE(error_of("[[particles]]\nname = \"p\"\nfile = \"" + csv.path() +
+    const TemporaryFolder folder;
+    const std::string csv = folder.write("points.csv", "x,y,z\n0,0,0\n");
+    EXPECT_NE(error_of("[[particles]]\nname = \"p\"\nfile = \"" + csv +
                        "\"\n[[volumes]]\nparticles = \"p\"\nuse_color = true")
                   .find("particles \"p\": the source has no color, which \"use_color\" needs"),
               std::string::npos);

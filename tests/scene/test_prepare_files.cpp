@@ -24,18 +24,18 @@ typename Grid::Ptr make_cube(const std::string& name, const typename Grid::Value
 /// Scene with one volume from files in its own folder.
 struct FileScene {
     explicit FileScene(const std::string& volume_keys)
-        : file("scene.toml", "[[volumes]]\nname = \"v\"\n" + volume_keys +
-                                 "\n[[lights]]\ntype = \"environment\"\n")
+        : scene_path(folder.write("scene.toml", "[[volumes]]\nname = \"v\"\n" + volume_keys +
+                                                    "\n[[lights]]\ntype = \"environment\"\n"))
     {
         openvdb::initialize();
     }
     void write(const std::string& name, const openvdb::GridPtrVec& grids) const
     {
-        write_vdb((std::filesystem::path(file.path()).parent_path() / name).string(), grids);
+        write_vdb(folder.file(name), grids);
     }
     [[nodiscard]] Scene prepare(int frame, const PrepareNeeds& needs = {})
     {
-        return prepare_frame(load_scene(file.path()), frame, needs, cache, stats);
+        return prepare_frame(load_scene(scene_path), frame, needs, cache, stats);
     }
     [[nodiscard]] std::string error(const PrepareNeeds& needs = {})
     {
@@ -47,7 +47,8 @@ struct FileScene {
         return "no error";
     }
 
-    test::TemporaryFile file;
+    TemporaryFolder folder;
+    std::string scene_path;
     SceneCache cache;
     PrepareStats stats;
 };

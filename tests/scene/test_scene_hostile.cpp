@@ -9,9 +9,9 @@ namespace {
 /// Either a scene or an Input error that names the file; anything else fails the test or crashes.
 void expect_survives(const std::string& name, const std::string& content)
 {
-    const test::TemporaryFile file(name, content);
+    const TemporaryFolder folder;
     try {
-        (void)load_scene(file.path());
+        (void)load_scene(folder.write(name, content));
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ExitCode::Input);
         EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << error.what();

@@ -149,12 +149,13 @@ rotate = [0, 180, 0]
 
 TEST(SceneIo, JsonReadsAsToml)
 {
-    const test::TemporaryFile json("scene.json", R"({
+    const TemporaryFolder folder;
+    const std::string json = folder.write("scene.json", R"({
   "$schema": "scene.schema.json",
   "volumes": [{"name": "smoke", "procedural": "puff"}],
   "lights": [{"name": "sun", "type": "distant", "strength": 1e0}]
 })");
-    EXPECT_EQ(load_scene(json.path()).hash, load_text(small_scene).hash);
+    EXPECT_EQ(load_scene(json).hash, load_text(small_scene).hash);
 }
 
 TEST(SceneIo, OverridesReachEverything)

@@ -10,14 +10,13 @@
 #include "image/exr.h"
 #include "image/png.h"
 #include "support/expect_error.h"
-#include "support/temp_folder.h"
+#include "support/temporary_folder.h"
 
 namespace mote {
 
 namespace {
 
 using Names = std::vector<std::string>;
-using test::expect_error;
 
 LayeredImage image_of(const Names& channels, float value, int width = 4, int height = 3)
 {
@@ -67,7 +66,7 @@ class CompareCommand : public testing::Test {
         return text.find(part) != std::string::npos;
     }
 
-    TempFolder folder;
+    TemporaryFolder folder;
 };
 
 }  // namespace

@@ -62,7 +62,6 @@ TEST(CompareImages, ALayersFiguresAreMeansOverItsChannels)
 
 TEST(CompareImages, RefusesWhatDoesNotMatch)
 {
-    using test::expect_error;
     const LayeredImage rgb = image_of({"R", "G", "B"});
     const LayeredImage more = image_of({"R", "G", "B", "Z", "volume.R"});
     expect_error(

@@ -12,7 +12,7 @@ using test::bumpy;
 using test::run_trials;
 using test::unit_cube;
 
-constexpr Interval everything{0.0f, infinity};
+using test::everything;
 
 TEST(Blackbody, ChromaticitiesAreThePlanckianLocus)
 {

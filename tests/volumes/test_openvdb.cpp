@@ -133,13 +133,14 @@ TEST(MakeBricks, BuildsTheSameBitsForAnyThreadCount)
     params.size = {1.0f, 1.5f, 1.0f};
     std::shared_ptr<const BrickGrid> first;
     for (const int threads : {1, 2, 3, 8}) {
-        const ThreadLimit limit(threads);
-        GridLoadReport report;
-        const auto bricks = make_bricks(*make_procedural(params, 1.5), {}, report);
-        if (!first) first = bricks;
-        EXPECT_EQ(bricks->values, first->values);
-        EXPECT_EQ(bricks->table, first->table);
-        EXPECT_EQ(bricks->sum, first->sum);
+        run_with_threads(threads, [&] {
+            GridLoadReport report;
+            const auto bricks = make_bricks(*make_procedural(params, 1.5), {}, report);
+            if (!first) first = bricks;
+            EXPECT_EQ(bricks->values, first->values);
+            EXPECT_EQ(bricks->table, first->table);
+            EXPECT_EQ(bricks->sum, first->sum);
+        });
     }
 }
 

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <vector>
 
+#include <gtest/gtest.h>
+
+#include "core/stats.h"
 #include "volumes/tracking.h"
 
 namespace mote::test {
@@ -57,6 +61,24 @@ inline Affine unit_cube()
     return {Mat3(64.0f), Vec3(0.0f)};
 }
 
+inline constexpr Interval everything{0.0f, infinity};
+
+inline std::shared_ptr<const BrickGrid> bumpy_bricks()
+{
+    static const auto grid = bricks_of({64, 64, 64}, unit_cube(), bumpy);
+    return grid;
+}
+
+/// Constant density 1 in a box whose optical depth along x is exactly `tau` (reconstruction
+/// included: n voxels of width h integrate to n h).
+inline Volume slab(float tau)
+{
+    const auto grid = bricks_of({64, 64, 64}, unit_cube(), [](Vec3i) { return 1.0f; });
+    return volume_of(grid, tau);
+}
+
+inline const Ray along_x{{-3.0f, 0.51f, 0.47f}, {1.0f, 0.0f, 0.0f}};
+
 /// Ray number `i` of a fixed set through the neighbourhood of `bounds`.
 inline Ray test_ray(const Bounds3& bounds, uint32_t i)
 {
@@ -81,6 +103,13 @@ inline double marched_depth(const Volume& volume, const Ray& ray, Interval range
         sum += static_cast<double>(sigma_t_at(volume, Vec3(q)));
     }
     return sum * length / steps;
+}
+
+/// |mean - exact| within 5 standard errors: false alarm once in 1.7 million seeds per comparison.
+inline void expect_mean(const RunningStats& stats, double exact, const char* what)
+{
+    EXPECT_LT(std::abs(stats.mean - exact), 5.0 * stats.standard_error() + 1e-6 * exact)
+        << what << ": " << stats.mean << " +- " << stats.standard_error() << ", exact " << exact;
 }
 
 }  // namespace mote::test
