@@ -107,7 +107,8 @@ void bind_render(CLI::App& app, RenderOptions& o, std::vector<std::string>& shor
         ->type_name("PATTERN");
     add_choice(app, "--existing", o.existing, existing_modes,
                "Files already there: overwrite them (the default), skip complete ones, or verify: "
-               "skip those complete, of the same scene, size and layers");
+               "skip those complete, of the same scene, size, layers and input files (path, "
+               "size and modification time)");
     app.add_option("--aovs", o.aovs,
                    "Layers beside RGBA, by comma; none for none. Default: the scene's")
         ->type_name("LIST");

@@ -35,6 +35,14 @@ fs::path folder_of(const std::string& path)
     return folder.empty() ? fs::path(".") : folder;
 }
 
+/// A text attribute; "" if there is none.
+std::string text_of(const LayeredImage& header, const std::string& name)
+{
+    const Attribute* attribute = header.find_attribute(name);
+    const auto* text = attribute ? std::get_if<std::string>(&attribute->value) : nullptr;
+    return text ? *text : "";
+}
+
 }  // namespace
 
 std::vector<FrameFiles> frame_files(const std::vector<int>& frames,
@@ -73,12 +81,13 @@ ExistingImage check_existing(const std::string& path, ExistingMode mode,
         if (header.width != expected.width || header.height != expected.height) {
             return {false, "other size"};
         }
-        const Attribute* hash = header.find_attribute("mote:sceneHash");
-        const auto* text = hash == nullptr ? nullptr : std::get_if<std::string>(&hash->value);
-        if (text == nullptr || *text != expected.scene_hash) return {false, "other scene"};
+        if (text_of(header, "mote:sceneHash") != expected.scene_hash) return {false, "other scene"};
+        if (text_of(header, "mote:inputsHash") != expected.inputs_hash) {
+            return {false, "input files changed"};
+        }
     }
     if (!is_complete_exr(path)) return {false, "damaged"};
-    return {true, mode == ExistingMode::Verify ? "complete, same scene" : "complete"};
+    return {true, mode == ExistingMode::Verify ? "complete, same scene and inputs" : "complete"};
 }
 
 void require_writable_folder(const std::string& path)

@@ -25,6 +25,7 @@ struct ExpectedImage {
     int width = 0;
     int height = 0;
     std::string scene_hash;
+    std::string inputs_hash;  ///< of the input files as they are now; "": it needs none
 };
 
 /// Whether a frame's image is kept, and why or why not in a few words.
@@ -34,9 +35,9 @@ struct ExistingImage {
 };
 
 /// Looks at the image of a frame. Skip keeps every OpenEXR file whose pixels can all be read:
-/// existing is not enough, a killed copy exists too. Verify also compares size and scene hash (the
-/// hash covers everything that changes the picture: samples, seed, layers, overrides; not the
-/// contents of input files). Costs a read of the file.
+/// existing is not enough, a killed copy exists too. Verify also compares size, scene hash (it
+/// covers everything that changes the picture: samples, seed, layers, overrides) and the hash of
+/// the input files (path, size and modification time of each). Costs a read of the file.
 [[nodiscard]] ExistingImage check_existing(const std::string& path, ExistingMode mode,
                                            const ExpectedImage& expected);
 

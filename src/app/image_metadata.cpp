@@ -63,11 +63,12 @@ Attribute::Rational frame_rate(double fps)
 }
 
 void add_metadata(LayeredImage& image, const SceneDescription& scene, int frame,
-                  double render_seconds, bool reproducible)
+                  const std::string& inputs_hash, double render_seconds, bool reproducible)
 {
     set(image, "software", std::string("mote " MOTE_VERSION));
     set(image, "mote:version", std::string(MOTE_VERSION));
     set(image, "mote:sceneHash", scene_hash_text(scene));
+    if (!inputs_hash.empty()) set(image, "mote:inputsHash", inputs_hash);
     set(image, "mote:scene", scene.name);
     set(image, "mote:frame", frame);
     // Text, because seeds use all 32 bits and OpenEXR's integers are signed.

@@ -22,6 +22,7 @@
 #include "image/png.h"
 #include "render/aov.h"
 #include "render/frame.h"
+#include "scene/inputs.h"
 #include "scene/prepare.h"
 
 namespace mote {
@@ -41,7 +42,6 @@ struct Run {
     const RenderOptions& options;
     const SceneDescription& scene;
     std::vector<FrameFiles> files;
-    ExpectedImage expected;
     int threads = 1;
     SceneCache cache;
     std::vector<FrameRecord> records;
@@ -91,11 +91,23 @@ void restore_preview(const FrameFiles& files, const Run& run)
     write_preview(read_exr(files.image), files, run);
 }
 
+/// Whether the frame's image is there already. Input files count as they are now.
+ExistingImage existing_image(const FrameFiles& files, const Run& run)
+{
+    const SceneDescription& scene = run.scene;
+    ExpectedImage expected{scene.render.width, scene.render.height, scene_hash_text(scene), ""};
+    if (run.options.existing == ExistingMode::Verify) {
+        expected.inputs_hash = inputs_hash(scene, files.frame);
+    }
+    return check_existing(files.image, run.options.existing, expected);
+}
+
 void render_one(const FrameFiles& files, Run& run, Progress& progress, FrameRecord& record)
 {
     const double start = wall_seconds();
     const double cpu_start = cpu_seconds();
     const SceneDescription& scene = run.scene;
+    const std::string inputs = inputs_hash(scene, files.frame);  // before they are read
     spdlog::debug("preparing frame {}", files.frame);
     const Scene frame =
         prepare_frame(scene, files.frame, needs_of(scene), run.cache, record.prepare);
@@ -119,7 +131,7 @@ void render_one(const FrameFiles& files, Run& run, Progress& progress, FrameReco
     }
 
     const double write_start = wall_seconds();
-    add_metadata(image, scene, files.frame, write_start - start, run.options.reproducible);
+    add_metadata(image, scene, files.frame, inputs, write_start - start, run.options.reproducible);
     // The image last: it is what marks the frame as done.
     write_preview(image, files, run);
     write_exr(files.image, image, scene.output.compression);
@@ -147,8 +159,7 @@ void render_all(Run& run, Progress& progress)
         record.frame = files.frame;
         record.file = files.image;
         // Asked only now: another process may have made the file in the meantime.
-        const ExistingImage existing =
-            check_existing(files.image, run.options.existing, run.expected);
+        const ExistingImage existing = existing_image(files, run);
         record.skipped = existing.keep;
         record.reason = existing.reason;
         if (existing.keep) {
@@ -172,8 +183,7 @@ void dry_run(Run& run)
                scene.render.height, scene.render.samples, run.threads);
     std::vector<int> to_render;
     for (const FrameFiles& files : run.files) {
-        const ExistingImage existing =
-            check_existing(files.image, run.options.existing, run.expected);
+        const ExistingImage existing = existing_image(files, run);
         fmt::print("frame {:>6}  {}  {}{}  ({})\n", files.frame,
                    existing.keep ? "skip  " : "render", files.image,
                    files.preview.empty() ? "" : " + " + files.preview, existing.reason);
@@ -210,13 +220,7 @@ void run_render(const RenderOptions& options)
     const std::vector<int> frames = chosen_frames(options.frames, scene);
     files = frame_files(frames, scene.output.path, scene.output.preview);
     written_files = &files;
-    Run run{options,
-            scene,
-            files,
-            {scene.render.width, scene.render.height, scene_hash_text(scene)},
-            chosen_threads(options.threads),
-            {},
-            {}};
+    Run run{options, scene, files, chosen_threads(options.threads), {}, {}};
     run_with_threads(run.threads, [&] {
         if (options.dry_run) {
             dry_run(run);
