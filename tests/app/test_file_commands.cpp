@@ -70,7 +70,7 @@ file = { path = "none.####.vdb" }
 
 TEST(FileCommands, CheckOpensImagesAndLooksForTheAttributesInUse)
 {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     folder.write("dust.csv", "x,y,z\n0,0,0\n1,0,0\n");
     folder.write("sky.exr", "no image");
     folder.write("scene.toml", R"(
@@ -99,7 +99,7 @@ image = "sky.exr"
 
 TEST(FileCommands, MotionBlurWithoutVelocitiesIsSaid)
 {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     folder.write("dust.csv", "x,y,z\n0,0,0\n");
     folder.write("moving.csv", "x,y,z,vx,vy,vz\n0,0,0,1,0,0\n");
     folder.write("scene.toml", R"(
@@ -127,7 +127,7 @@ particles = "dust"
 
 TEST(FileCommands, ASheetIsAPng)
 {
-    const TempFolder folder;
+    const TemporaryFolder folder;
     const Finished sheet = run_mote(folder.path(), {"sheet", "a.jpg", "b.png"});
     EXPECT_EQ(sheet.exit_code, 2);
     EXPECT_TRUE(contains(sheet.err, "must end in .png")) << sheet.err;
