@@ -34,7 +34,8 @@ EmitterParams emitter(EmitterKind kind, int64_t count = 5000)
 template <class T>
 bool same_bits(const std::vector<T>& a, const std::vector<T>& b)
 {
-    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+    if (a.size() != b.size()) return false;
+    return a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
 bool same_bits(const ParticleSet& a, const ParticleSet& b)
