@@ -1,20 +1,15 @@
 #include "particles/cache.h"
 
-#include <algorithm>
-#include <cctype>
-#include <filesystem>
-
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "core/file_name.h"
 
 namespace mote {
 
 PointFormat point_format(const std::string& path)
 {
-    std::string ending = std::filesystem::path(path).extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string ending = lower_extension(path);
     if (ending == ".vdb") return PointFormat::Vdb;
     if (ending == ".ply") return PointFormat::Ply;
     if (ending == ".csv" || ending == ".txt") return PointFormat::Csv;

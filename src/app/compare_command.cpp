@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -9,6 +8,7 @@
 #include "app/compare_report.h"
 #include "app/compare_threshold.h"
 #include "core/error.h"
+#include "core/file_name.h"
 #include "core/text.h"
 #include "image/atomic_file.h"
 #include "image/exr.h"
@@ -20,14 +20,6 @@
 namespace mote {
 
 namespace {
-
-std::string extension_of(const std::string& path)
-{
-    std::string extension = std::filesystem::path(path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
 
 std::vector<std::string> split_list(const std::string& list)
 {
@@ -59,12 +51,12 @@ LayeredImage layers_of_png(const std::string& path)
 
 LayeredImage read_layers(const std::string& path)
 {
-    return extension_of(path) == ".png" ? layers_of_png(path) : read_exr(path);
+    return lower_extension(path) == ".png" ? layers_of_png(path) : read_exr(path);
 }
 
 void check_difference_name(const std::string& path)
 {
-    const std::string extension = extension_of(path);
+    const std::string extension = lower_extension(path);
     if (path.empty() || extension == ".exr" || extension == ".png") return;
     throw Error(ExitCode::Usage, fmt::format("--diff \"{}\": the name must end in .exr or .png",
                                              printable(path, 1000)));
@@ -81,7 +73,7 @@ double full_scale_of(const LayerMetrics& layer)
 std::string write_difference(const std::string& path, const LayeredImage& tested,
                              const LayeredImage& reference, const std::vector<LayerMetrics>& layers)
 {
-    if (extension_of(path) == ".exr") {
+    if (lower_extension(path) == ".exr") {
         write_exr(path, difference_image(tested, reference, layers), ExrCompression::Zip);
         return fmt::format("\n{}: A - B\n", printable(path, 1000));
     }

@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <cctype>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -11,6 +9,7 @@
 #include "app/info_volume.h"
 #include "app/output_pattern.h"
 #include "core/error.h"
+#include "core/file_name.h"
 #include "core/text.h"
 #include "particles/source_info.h"
 #include "scene/scene_io.h"
@@ -18,14 +17,6 @@
 namespace mote {
 
 namespace {
-
-std::string extension_of(const std::string& path)
-{
-    std::string extension = std::filesystem::path(path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
 
 /// The file itself, or the one of a pattern at --frame.
 std::string chosen_file(const InfoOptions& options)
@@ -61,7 +52,7 @@ std::string describe_vdb(const std::string& path, double fps)
 void run_info(const InfoOptions& options)
 {
     const std::string file = chosen_file(options);
-    const std::string extension = extension_of(file);
+    const std::string extension = lower_extension(file);
     if (extension == ".toml" || extension == ".json") {
         const SceneDescription scene = load_scene(file, options.overrides);
         fmt::print("{}", describe_scene(scene, options.frame.value_or(scene.first_frame)));

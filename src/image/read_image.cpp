@@ -15,6 +15,7 @@
 #include <fmt/core.h>
 
 #include "core/error.h"
+#include "core/file_name.h"
 #include "core/text.h"
 #include "image/color.h"
 #include "image/exr_check.h"
@@ -47,9 +48,7 @@ constexpr std::array<Format, 3> formats{{
 
 const Format& format_of(const std::string& path)
 {
-    std::string extension = fs::path(path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = lower_extension(path);
     for (const Format& format : formats) {
         if (format.extension == extension) return format;
     }
