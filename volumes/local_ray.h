@@ -52,4 +52,11 @@ struct LocalRay {
     return out;
 }
 
+/// A world ray in the grid of a volume's density, at the ray's time. Precondition: not void.
+[[nodiscard]] inline LocalRay make_density_ray(const Volume& volume, const Ray& ray, Interval range)
+{
+    if (volume.at_rest) return make_local_ray(*volume.density, volume.at_rest->density, ray, range);
+    return make_local_ray(*volume.density, frames_at(volume, ray.time).density, ray, range);
+}
+
 }  // namespace mote

@@ -2,24 +2,13 @@
 
 #include "volumes/cell_walk.h"
 #include "volumes/collisions.h"
+#include "volumes/media_at.h"
 
 namespace mote {
 namespace {
 
 /// Beyond this optical depth a float's exp(-tau) is 0.
 constexpr float opaque = 104.0f;
-
-bool is_void(const Volume& volume)
-{
-    return !volume.density || volume.density->index_bounds.is_empty() ||
-           !(volume.density_scale > 0.0f);
-}
-
-LocalRay density_ray(const Volume& volume, const Ray& ray, Interval range)
-{
-    if (volume.at_rest) return make_local_ray(*volume.density, volume.at_rest->density, ray, range);
-    return make_local_ray(*volume.density, frames_at(volume, ray.time).density, ray, range);
-}
 
 Collision collision_at(const Volume& volume, const LocalRay& local, float s)
 {
@@ -30,7 +19,7 @@ Collision collision_at(const Volume& volume, const LocalRay& local, float s)
 float optical_depth_up_to(const Volume& volume, const Ray& ray, Interval range, double limit)
 {
     if (is_void(volume)) return 0.0f;
-    const LocalRay local = density_ray(volume, ray, range);
+    const LocalRay local = make_density_ray(volume, ray, range);
     double sum = 0.0;
     const double stop = limit / static_cast<double>(volume.density_scale);
     for_each_brick(*volume.density, local, [&](const BrickSpan& span) {
@@ -49,7 +38,7 @@ std::optional<Collision> sample_free_flight(const Media& media, const Ray& ray, 
     for (size_t i = 0; i < media.volumes.size(); ++i) {
         const Volume& volume = media.volumes[i];
         if (is_void(volume)) continue;
-        const LocalRay local = density_ray(volume, ray, range);
+        const LocalRay local = make_density_ray(volume, ray, range);
         if (local.misses()) continue;
         const float s = track_delta(*volume.density, local, volume.density_scale, rng);
         if (s < 0.0f) continue;
@@ -65,7 +54,7 @@ std::optional<Collision> invert_optical_depth(const Volume& volume, const Ray& r
 {
     if (is_void(volume)) return std::nullopt;
     const BrickGrid& grid = *volume.density;
-    const LocalRay local = density_ray(volume, ray, range);
+    const LocalRay local = make_density_ray(volume, ray, range);
     double left = static_cast<double>(tau) / static_cast<double>(volume.density_scale);
     std::optional<Collision> found;
     for_each_brick(grid, local, [&](const BrickSpan& span) {
@@ -92,7 +81,7 @@ float estimate_transmittance(const Media& media, const Ray& ray, Interval range,
         if (kind == TransmittanceKind::Exact) {
             T *= std::exp(-optical_depth_up_to(volume, ray, range, static_cast<double>(opaque)));
         } else {
-            const LocalRay local = density_ray(volume, ray, range);
+            const LocalRay local = make_density_ray(volume, ray, range);
             if (local.misses()) continue;
             const float scale = volume.density_scale;
             T *= kind == TransmittanceKind::Ratio
@@ -128,6 +117,15 @@ float sigma_t_at(const Volume& volume, Vec3 p_object)
     if (is_void(volume)) return 0.0f;
     const BrickGrid& grid = *volume.density;
     return volume.density_scale * sample_trilinear(grid, grid.index_from_object.point(p_object));
+}
+
+float sigma_t_at(const Media& media, Vec3 p, float time)
+{
+    float sum = 0.0f;
+    for_each_medium_at(
+        media, p, time,
+        [&](const Volume& /*volume*/, Vec3 /*local*/, float sigma_t) { sum += sigma_t; });
+    return sum;
 }
 
 Vec3 velocity_at(const Volume& volume, Vec3 p_object)
