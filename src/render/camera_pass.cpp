@@ -91,6 +91,18 @@ void add_first_collision(const PassInputs& inputs, const PixelDomain& domain, fl
 
 }  // namespace
 
+void PassCounts::add(const PassCounts& other)
+{
+    bins.rays += other.bins.rays;
+    bins.cells += other.bins.cells;
+    bins.bins += other.bins.bins;
+    light_rays.rays += other.light_rays.rays;
+    light_rays.bricks += other.light_rays.bricks;
+    light_rays.cells += other.light_rays.cells;
+    candidates += other.candidates;
+    truncated += other.truncated;
+}
+
 Rng pass_rng(const PassInputs& inputs, const PassKey& key, Stream stream)
 {
     const Scene& scene = *inputs.domain.scene;

@@ -34,6 +34,8 @@ struct PassCounts {
     WalkCounts light_rays;
     int64_t candidates = 0;
     int64_t truncated = 0;  ///< passes whose light could have scattered on
+
+    void add(const PassCounts& other);
 };
 
 /// Draws the pixel's camera ray, tabulates the media along it and fills all parts of the sample

@@ -4,6 +4,7 @@
 #include <mutex>
 
 #include "core/parallel.h"
+#include "render/restir_reuse.h"
 #include "restir/cache_stats.h"
 #include "restir/candidates.h"
 
@@ -55,26 +56,15 @@ void trace_tile_pass(const PassInputs& inputs, const Tile& tile, uint32_t pass,
     }
 }
 
-void add_counts(const PassCounts& from, PassCounts& to)
-{
-    to.bins.rays += from.bins.rays;
-    to.bins.cells += from.bins.cells;
-    to.bins.bins += from.bins.bins;
-    to.light_rays.rays += from.light_rays.rays;
-    to.light_rays.bricks += from.light_rays.bricks;
-    to.light_rays.cells += from.light_rays.cells;
-    to.candidates += from.candidates;
-    to.truncated += from.truncated;
-}
-
 int64_t pixel_passes(const RenderDescription& render)
 {
     return int64_t{render.width} * render.height * render.samples;
 }
 
-/// For scenes that outlive every pass anyway.
-std::shared_ptr<const Scene> borrow(const Scene& scene)
+/// The scene for as long as the frame takes; with reuse its samples must outlive the frame.
+std::shared_ptr<const Scene> share(const Scene& scene, bool is_kept)
 {
+    if (is_kept) return std::make_shared<const Scene>(scene);
     return {std::shared_ptr<const Scene>(), &scene};
 }
 
@@ -87,11 +77,21 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
     const double cpu_start = process_cpu_seconds();
     history.caches = make_light_caches(scene, {pixel_passes(render)}, history.caches);
     stats.cache_cpu_seconds = process_cpu_seconds() - cpu_start;
-    const FrameDomain domain = make_frame_domain(borrow(scene), history.caches, render.restir);
+    const bool may_reuse = render.restir.reuse != ReuseMode::Off &&
+                           !(render.restir.reuse == ReuseMode::Auto && render.samples > 1);
+    const FrameDomain domain =
+        make_frame_domain(share(scene, may_reuse), history.caches, render.restir);
+    std::optional<Change> change;
+    if (history.last.scene) change = change_between(history.last, domain);
+    const ReusePlan plan = plan_reuse(domain, render, change);
     const PassInputs inputs{domain, render, aovs, lights};
     PassCounts counts;
-    const bool finished =
-        render_independent_passes(inputs, control, film, counts, stats.dropped_non_finite);
+    const bool finished = plan.any() ? render_reusing_passes(inputs, plan, control, history.before,
+                                                             film, counts, stats.dropped_non_finite)
+                                     : render_independent_passes(inputs, control, film, counts,
+                                                                 stats.dropped_non_finite);
+    if (!plan.any()) history.before = {};
+    history.last = may_reuse ? domain : FrameDomain{};
     stats.truncated_paths = counts.truncated;
     stats.camera_rays = counts.bins.rays;
     stats.light_rays = counts.light_rays.rays;
@@ -127,7 +127,7 @@ bool render_independent_passes(const PassInputs& inputs, const FrameControl& con
         }
         {
             const std::lock_guard<std::mutex> lock(mutex);
-            add_counts(tile_counts, counts);
+            counts.add(tile_counts);
             dropped += tile_dropped;
         }
         if (control.tile_done) control.tile_done();

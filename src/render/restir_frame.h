@@ -2,6 +2,7 @@
 
 #include "render/camera_pass.h"
 #include "render/frame.h"
+#include "restir/pass_state.h"
 
 namespace mote {
 
@@ -13,6 +14,8 @@ struct FrameControl {
 
 struct FrameHistory::Impl {
     std::shared_ptr<const LightCaches> caches;
+    FrameDomain last;     ///< of the frame before, if a next one may reuse its samples
+    FinishedPass before;  ///< its last pass, if that kept samples
 };
 
 /// All passes of a frame by the ReSTIR estimator; builds the light caches, or takes those of the
