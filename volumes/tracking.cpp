@@ -9,18 +9,6 @@ namespace {
 /// Beyond this optical depth a float's exp(-tau) is 0.
 constexpr float opaque = 104.0f;
 
-bool is_void(const Volume& volume)
-{
-    return !volume.density || volume.density->index_bounds.is_empty() ||
-           !(volume.density_scale > 0.0f);
-}
-
-LocalRay density_ray(const Volume& volume, const Ray& ray, Interval range)
-{
-    if (volume.at_rest) return make_local_ray(*volume.density, volume.at_rest->density, ray, range);
-    return make_local_ray(*volume.density, frames_at(volume, ray.time).density, ray, range);
-}
-
 Collision collision_at(const Volume& volume, const LocalRay& local, float s)
 {
     return {local.world_t(s), -1, object_from_local(volume).point(local.at(s))};
