@@ -1,4 +1,5 @@
-#include "volumes/brick_pieces_simd.h"
+#include "volumes/brick_steps_simd.h"
+#include "volumes/cell_steps_simd.h"
 
 namespace mote {
 namespace {
@@ -6,6 +7,7 @@ namespace {
 /// One lane: the twin that the vector forms are tested against.
 struct Lanes {
     using Real = float;
+    using Int = int32_t;
     using Mask = bool;
     static constexpr size_t width = 1;
 
@@ -22,6 +24,18 @@ struct Lanes {
     static Mask less_equal(Real a, Real b) { return a <= b; }
     static Mask equal(Real a, Real b) { return a == b; }
     static bool any(Mask m) { return m; }
+    static Mask both(Mask a, Mask b) { return a && b; }
+    static Mask either(Mask a, Mask b) { return a || b; }
+    static Real load(const float* p) { return *p; }
+    static void store(float* p, Real a) { *p = a; }
+    static Int to_int(Real a) { return static_cast<int32_t>(a); }
+    static Real to_real(Int a) { return static_cast<float>(a); }
+    static Int count_from(int32_t a) { return a; }
+    static Int look_up(const BrickTable& table, Real x, Real y, Real z)
+    {
+        return table.entries[(to_int(z) * table.count[1] + to_int(y)) * table.count[0] +
+                             to_int(x)];
+    }
     static Real select(Mask m, Real a, Real b) { return m ? a : b; }
     static Real add_if(Mask m, Real a, Real b) { return m ? a + b : a; }
     static void load_pieces(const BrickPiece* pieces, const uint16_t* order, Real* field)
@@ -34,6 +48,19 @@ struct Lanes {
         field[3] = piece.length;
     }
     static void scatter(Real x, const uint16_t* order, float* out) { out[order[0]] = x; }
+
+    /// Appends the lanes of a mask to an array.
+    struct Packing {
+        bool mask;
+
+        explicit Packing(Mask m) : mask(m) {}
+        size_t count() const { return mask ? 1 : 0; }
+        template <class T>
+        void store(T* to, T a) const
+        {
+            *to = a;
+        }
+    };
 
     struct Cell {
         const float* corner;
@@ -58,10 +85,6 @@ struct Lanes {
 
 }  // namespace
 
-void integrate_pieces_scalar(const float* values, const BrickPiece* pieces, const uint16_t* order,
-                             size_t count, float* integral)
-{
-    integrate_all<Lanes>(values, pieces, order, count, integral);
-}
+const WalkKernels scalar_walk{step_all<Lanes>, integrate_all<Lanes>};
 
 }  // namespace mote

@@ -1,6 +1,7 @@
 #include <immintrin.h>
 
-#include "volumes/brick_pieces_simd.h"
+#include "volumes/brick_steps_simd.h"
+#include "volumes/cell_steps_simd.h"
 
 namespace mote {
 namespace {
@@ -43,8 +44,25 @@ inline void load_pairs(const float* const* p, Offsets offsets, __m256* v)
     }
 }
 
+/// For each mask of eight lanes, the numbers of those that are set, next to each other.
+struct PackingTable {
+    uint8_t from[256][8] = {};
+
+    constexpr PackingTable()
+    {
+        for (int mask = 0; mask < 256; ++mask) {
+            int n = 0;
+            for (int lane = 0; lane < 8; ++lane) {
+                if ((mask >> lane & 1) != 0) from[mask][n++] = static_cast<uint8_t>(lane);
+            }
+        }
+    }
+};
+constexpr PackingTable packing_table;
+
 struct Lanes {
     using Real = __m256;
+    using Int = __m256i;
     using Mask = __m256;
     static constexpr size_t width = 8;
 
@@ -60,6 +78,24 @@ struct Lanes {
     static Mask less(Real a, Real b) { return _mm256_cmp_ps(a, b, _CMP_LT_OQ); }
     static Mask less_equal(Real a, Real b) { return _mm256_cmp_ps(a, b, _CMP_LE_OQ); }
     static Mask equal(Real a, Real b) { return _mm256_cmp_ps(a, b, _CMP_EQ_OQ); }
+    static Mask both(Mask a, Mask b) { return _mm256_and_ps(a, b); }
+    static Mask either(Mask a, Mask b) { return _mm256_or_ps(a, b); }
+    static Real load(const float* p) { return _mm256_loadu_ps(p); }
+    static void store(float* p, Real a) { _mm256_storeu_ps(p, a); }
+    static Int to_int(Real a) { return _mm256_cvttps_epi32(a); }
+    static Real to_real(Int a) { return _mm256_cvtepi32_ps(a); }
+    static Int count_from(int32_t a)
+    {
+        return _mm256_add_epi32(_mm256_set1_epi32(a), _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7));
+    }
+    static Int look_up(const BrickTable& table, Real x, Real y, Real z)
+    {
+        const auto mul_add = [](Int a, int32_t b, Int c) {
+            return _mm256_add_epi32(_mm256_mullo_epi32(a, _mm256_set1_epi32(b)), c);
+        };
+        const Int row = mul_add(to_int(z), table.count[1], to_int(y));
+        return _mm256_i32gather_epi32(table.entries, mul_add(row, table.count[0], to_int(x)), 4);
+    }
     static bool any(Mask m) { return _mm256_movemask_ps(m) != 0; }
     static Real select(Mask m, Real a, Real b) { return _mm256_blendv_ps(b, a, m); }
     static Real add_if(Mask m, Real a, Real b) { return _mm256_add_ps(a, _mm256_and_ps(m, b)); }
@@ -75,6 +111,28 @@ struct Lanes {
         _mm256_store_ps(lane, x);
         for (int i = 0; i < 8; ++i) out[order[i]] = lane[i];
     }
+
+    /// Appends the lanes of a mask to an array.
+    struct Packing {
+        unsigned mask;
+        __m256i from;
+
+        explicit Packing(Mask m) : mask(static_cast<unsigned>(_mm256_movemask_ps(m)))
+        {
+            const auto* bytes = reinterpret_cast<const __m128i*>(packing_table.from[mask]);
+            from = _mm256_cvtepu8_epi32(_mm_loadl_epi64(bytes));
+        }
+        size_t count() const { return static_cast<size_t>(__builtin_popcount(mask)); }
+        void store(float* to, Real a) const
+        {
+            _mm256_storeu_ps(to, _mm256_permutevar8x32_ps(a, from));
+        }
+        void store(int32_t* to, Int a) const
+        {
+            _mm256_storeu_si256(reinterpret_cast<__m256i*>(to),
+                                _mm256_permutevar8x32_epi32(a, from));
+        }
+    };
 
     /// Through memory: extracting addresses from vectors one by one costs more.
     struct Cell {
@@ -112,10 +170,6 @@ struct Lanes {
 
 }  // namespace
 
-void integrate_pieces_avx2(const float* values, const BrickPiece* pieces, const uint16_t* order,
-                           size_t count, float* integral)
-{
-    integrate_all<Lanes>(values, pieces, order, count, integral);
-}
+const WalkKernels avx2_walk{step_all<Lanes>, integrate_all<Lanes>};
 
 }  // namespace mote

@@ -1,9 +1,6 @@
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-
-#include "volumes/brick_pieces.h"
+#include "volumes/walk_kernels.h"
 
 // The closed-form walk of BrickPieces, written once for any number of lanes. Each instruction set
 // instantiates it in a file of its own with a `Lanes` type from an anonymous namespace, so that no

@@ -1,6 +1,7 @@
 #include <immintrin.h>
 
-#include "volumes/brick_pieces_simd.h"
+#include "volumes/brick_steps_simd.h"
+#include "volumes/cell_steps_simd.h"
 
 namespace mote {
 namespace {
@@ -56,6 +57,7 @@ inline void load_pairs(const float* const* p, Offsets offsets, __m512* v)
 
 struct Lanes {
     using Real = __m512;
+    using Int = __m512i;
     using Mask = __mmask16;
     static constexpr size_t width = 16;
 
@@ -71,6 +73,26 @@ struct Lanes {
     static Mask less(Real a, Real b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
     static Mask less_equal(Real a, Real b) { return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ); }
     static Mask equal(Real a, Real b) { return _mm512_cmp_ps_mask(a, b, _CMP_EQ_OQ); }
+    static Mask both(Mask a, Mask b) { return _kand_mask16(a, b); }
+    static Mask either(Mask a, Mask b) { return _kor_mask16(a, b); }
+    static Real load(const float* p) { return _mm512_loadu_ps(p); }
+    static void store(float* p, Real a) { _mm512_storeu_ps(p, a); }
+    static Int to_int(Real a) { return _mm512_cvttps_epi32(a); }
+    static Real to_real(Int a) { return _mm512_cvtepi32_ps(a); }
+    static Int count_from(int32_t a)
+    {
+        return _mm512_add_epi32(
+            _mm512_set1_epi32(a),
+            _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15));
+    }
+    static Int look_up(const BrickTable& table, Real x, Real y, Real z)
+    {
+        const auto mul_add = [](Int a, int32_t b, Int c) {
+            return _mm512_add_epi32(_mm512_mullo_epi32(a, _mm512_set1_epi32(b)), c);
+        };
+        const Int row = mul_add(to_int(z), table.count[1], to_int(y));
+        return _mm512_i32gather_epi32(mul_add(row, table.count[0], to_int(x)), table.entries, 4);
+    }
     static bool any(Mask m) { return m != 0; }
     static Real select(Mask m, Real a, Real b) { return _mm512_mask_blend_ps(m, b, a); }
     static Real add_if(Mask m, Real a, Real b) { return _mm512_mask_add_ps(a, m, a, b); }
@@ -86,6 +108,22 @@ struct Lanes {
         _mm512_store_ps(lane, x);
         for (int i = 0; i < 16; ++i) out[order[i]] = lane[i];
     }
+
+    /// Appends the lanes of a mask to an array.
+    struct Packing {
+        Mask mask;
+
+        explicit Packing(Mask m) : mask(m) {}
+        size_t count() const { return static_cast<size_t>(__builtin_popcount(mask)); }
+        void store(float* to, Real a) const
+        {
+            _mm512_storeu_ps(to, _mm512_maskz_compress_ps(mask, a));
+        }
+        void store(int32_t* to, Int a) const
+        {
+            _mm512_storeu_si512(to, _mm512_maskz_compress_epi32(mask, a));
+        }
+    };
 
     /// Through memory: extracting addresses from vectors one by one costs more.
     struct Cell {
@@ -123,10 +161,6 @@ struct Lanes {
 
 }  // namespace
 
-void integrate_pieces_avx512(const float* values, const BrickPiece* pieces, const uint16_t* order,
-                             size_t count, float* integral)
-{
-    integrate_all<Lanes>(values, pieces, order, count, integral);
-}
+const WalkKernels avx512_walk{step_all<Lanes>, integrate_all<Lanes>};
 
 }  // namespace mote
