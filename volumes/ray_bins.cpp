@@ -51,7 +51,7 @@ void bin_one(const Volume& volume, const Ray& ray, float cut, RayBins& bins, Bin
 {
     bins.count = 0;
     const BrickGrid& grid = *volume.density;
-    const LocalRay local = make_density_ray(volume, ray, {0.0f, infinity});
+    const LocalRay local = density_ray(volume, ray, {0.0f, infinity});
     if (local.misses()) return;
     bins.t0 = local.t0;
     const float scale = volume.density_scale;
@@ -135,7 +135,7 @@ float depth_between(const Media& media, const Ray& ray, const RayBins& bins, flo
     float sum = 0.0f;
     for (const Volume& volume : media.volumes) {
         if (is_void(volume)) continue;
-        const LocalRay local = make_density_ray(volume, ray, {bins.world_t(s0), bins.world_t(s1)});
+        const LocalRay local = density_ray(volume, ray, {bins.world_t(s0), bins.world_t(s1)});
         if (local.misses()) continue;
         sum += depth_between(volume, local, 0.0f, local.s1);
     }

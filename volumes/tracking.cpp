@@ -19,7 +19,7 @@ Collision collision_at(const Volume& volume, const LocalRay& local, float s)
 float optical_depth_up_to(const Volume& volume, const Ray& ray, Interval range, double limit)
 {
     if (is_void(volume)) return 0.0f;
-    const LocalRay local = make_density_ray(volume, ray, range);
+    const LocalRay local = density_ray(volume, ray, range);
     double sum = 0.0;
     const double stop = limit / static_cast<double>(volume.density_scale);
     for_each_brick(*volume.density, local, [&](const BrickSpan& span) {
@@ -38,7 +38,7 @@ std::optional<Collision> sample_free_flight(const Media& media, const Ray& ray, 
     for (size_t i = 0; i < media.volumes.size(); ++i) {
         const Volume& volume = media.volumes[i];
         if (is_void(volume)) continue;
-        const LocalRay local = make_density_ray(volume, ray, range);
+        const LocalRay local = density_ray(volume, ray, range);
         if (local.misses()) continue;
         const float s = track_delta(*volume.density, local, volume.density_scale, rng);
         if (s < 0.0f) continue;
@@ -54,7 +54,7 @@ std::optional<Collision> invert_optical_depth(const Volume& volume, const Ray& r
 {
     if (is_void(volume)) return std::nullopt;
     const BrickGrid& grid = *volume.density;
-    const LocalRay local = make_density_ray(volume, ray, range);
+    const LocalRay local = density_ray(volume, ray, range);
     double left = static_cast<double>(tau) / static_cast<double>(volume.density_scale);
     std::optional<Collision> found;
     for_each_brick(grid, local, [&](const BrickSpan& span) {
@@ -81,7 +81,7 @@ float estimate_transmittance(const Media& media, const Ray& ray, Interval range,
         if (kind == TransmittanceKind::Exact) {
             T *= std::exp(-optical_depth_up_to(volume, ray, range, static_cast<double>(opaque)));
         } else {
-            const LocalRay local = make_density_ray(volume, ray, range);
+            const LocalRay local = density_ray(volume, ray, range);
             if (local.misses()) continue;
             const float scale = volume.density_scale;
             T *= kind == TransmittanceKind::Ratio

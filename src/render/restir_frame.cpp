@@ -94,8 +94,8 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
     history.last = may_reuse ? domain : FrameDomain{};
     stats.truncated_paths = counts.truncated;
     stats.camera_rays = counts.bins.rays;
-    stats.light_rays = counts.light_rays.rays;
-    stats.cells = counts.bins.cells + counts.light_rays.cells;
+    stats.light_rays = static_cast<int64_t>(counts.light_rays.rays);
+    stats.cells = counts.bins.cells + static_cast<int64_t>(counts.light_rays.cells);
     stats.candidates = counts.candidates;
     return finished;
 }
