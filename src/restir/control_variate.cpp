@@ -181,8 +181,11 @@ Spectrum InfiniteLights::correct_distant(float u, float u_light, float share, in
                        scattering_at(frame_, flight.x, ray_.time, -ray_.d, light.direction);
     rays.add(owner, flight.x, light.direction, infinity, ray_.time, f,
              depth_that_matters(f, pixel_luminance));
-    return -weight * between(cached_distant(edges_[flight.bin], distant[i]),
-                             cached_distant(edges_[flight.bin + 1], distant[i]), flight.lambda);
+    const EdgeLight& near = edges_[flight.bin];
+    const EdgeLight& far = edges_[flight.bin + 1];
+    if (distant.size() == 1) return -weight * between(near.distant, far.distant, flight.lambda);
+    return -weight * between(cached_distant(near, distant[i]), cached_distant(far, distant[i]),
+                             flight.lambda);
 }
 
 Spectrum InfiniteLights::correct_environment(float u, Vec2 u_direction, float u_choice, float share,
@@ -228,7 +231,10 @@ Spectrum scatter_infinite_lights(const FrameDomain& frame, const Ray& ray, const
     const float known = luminance(sum);
     const Vec2 distance = numbers.pair(pairs.distances);
     const Vec2 direction = numbers.pair(pairs.directions);
-    const Vec2 choice = numbers.pair(pairs.choices);
+    // One light, no image: nothing to choose.
+    const bool chooses = caches.distant.size() > 1 ||
+                         (frame.scene->environment && frame.scene->environment->map);
+    const Vec2 choice = chooses ? numbers.pair(pairs.choices) : Vec2(0.5f);
     // Several rays of one pass form a lattice, shifted by the pass's own numbers.
     const auto shifted = [](float u, float step) {
         const float v = u + step;
