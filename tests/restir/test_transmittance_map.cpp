@@ -1,42 +1,17 @@
 #include <gtest/gtest.h>
 
+#include "clouds.h"
 #include "core/parallel.h"
-#include "core/sampling.h"
 #include "restir/transmittance_map.h"
-#include "support/media.h"
 
 namespace mote {
 namespace {
 
+using test::bounds_of;
+using test::two_clouds;
+
 constexpr Interval everything{0.0f, infinity};
 const Vec3 slanted = glm::normalize(Vec3(0.4f, 1.0f, -0.7f));
-
-Volume turned(Volume volume, Vec3d move)
-{
-    Trs& trs = volume.world_from_object.keys[0];
-    trs.translate = move;
-    trs.rotate = glm::normalize(Quatd(0.8, 0.3, -0.4, 0.2));
-    trs.scale = Vec3d(1.0, 1.4, 0.7);
-    finalize(volume);
-    return volume;
-}
-
-/// Two rotated, scaled clouds that overlap, of depths about 8 and 3.
-Media two_clouds()
-{
-    Volume a = test::clumpy_cube(48);
-    a.density_scale = 16.0f;
-    Volume b = test::clumpy_cube(30);
-    b.density_scale = 6.0f;
-    return {{turned(a, Vec3d(0.2, -0.3, 0.1)), turned(b, Vec3d(0.7, 0.1, -0.2))}};
-}
-
-Bounds3 bounds_of(const Media& media)
-{
-    Bounds3 bounds;
-    for (const Volume& volume : media.volumes) bounds.extend(world_bounds(volume));
-    return bounds;
-}
 
 /// Mean square error of exp(-depth) over the mean square of the exact one, at random points of the
 /// media's box that have smoke before them.
