@@ -28,6 +28,10 @@ struct DirectionHats {
 
     /// wi [unit]; any finite or non-finite vector gives valid indices and weights.
     [[nodiscard]] Weights at(Vec3 wi) const;
+
+    /// The same on the unit square that the sphere maps to: u in [0,1] across the bands, v in turns
+    /// in [-1,1] along the azimuths.
+    [[nodiscard]] Weights at_square(float u, float v) const;
 };
 
 /// Mean radiance of the environment under each hat [W/(m^2 sr)], count() values: summed, times

@@ -135,7 +135,7 @@ Quality quality_of(const EnvironmentCache& cache, const Media& media,
                          (static_cast<float>(k / n) + 0.5f) / n);
             const Vec3 wi = sample_phase(phase, wo, u);
             const float T = std::exp(-optical_depth(media, {x, wi}, everything));
-            const float f = cache.directional(0, x, wi).x / phase_pdf(phase, wo, wi);
+            const float f = cache.directional(0, x, wo, wi).x / phase_pdf(phase, wo, wi);
             truth.add(static_cast<double>(T));
             residual.add(static_cast<double>(T - f));
         }
@@ -185,8 +185,9 @@ void environments(Media media, const std::vector<Vec3>& points)
             media.volumes[0].phase.g = g;
             const EnvironmentCache one(T, radiance, media, eye);
             const double in = nanoseconds(points, [&](Vec3 x) { return one.inscatter(0, x).x; });
-            const double dir = directional_nanoseconds(
-                points, [&](Vec3 x, Vec3 wi) { return one.directional(0, x, wi).x; });
+            const double dir = directional_nanoseconds(points, [&](Vec3 x, Vec3 wi) {
+                return one.directional(0, x, Vec3(0.0f, 0.0f, 1.0f), wi).x;
+            });
             const Quality q = quality_of(one, media, points);
             std::printf(
                 "    g %5.2f: inscatter %5.1f ns, rel. mse %8.2e; directional %5.1f ns, "

@@ -70,17 +70,72 @@ Vec3d integral_over_directions(const EnvironmentCache& cache, int phase, Vec3 x,
             const double r = std::sqrt(1.0 - y * y);
             const double phi = 2.0 * std::numbers::pi * (j + 0.5) / columns;
             const Vec3 wi(Vec3d(r * std::sin(phi), y, r * std::cos(phi)));
-            sum += Vec3d(cache.directional(phase, x, wi));
+            sum += Vec3d(cache.directional(phase, x, Vec3(1.0f, 0.0f, 0.0f), wi));
         }
     }
     return sum * (4.0 * std::numbers::pi / (rows * columns));
 }
 
+/// Midpoint rule over the random numbers of sample_phase: for lobes too narrow for the above.
+Vec3d integral_over_lobes(const EnvironmentCache& cache, const Phase& phase, Vec3 x, Vec3 wo,
+                          int rows, int columns)
+{
+    Vec3d sum(0.0);
+    for (int i = 0; i < rows; ++i) {
+        for (int j = 0; j < columns; ++j) {
+            const Vec2 u((static_cast<float>(i) + 0.5f) / static_cast<float>(rows),
+                         (static_cast<float>(j) + 0.5f) / static_cast<float>(columns));
+            const Vec3 wi = sample_phase(phase, wo, u);
+            sum += Vec3d(cache.directional(0, x, wo, wi)) / double(phase_pdf(phase, wo, wi));
+        }
+    }
+    return sum / (1.0 * rows * columns);
+}
+
+TEST(EnvironmentCache, DirectionalIntegratesToInscatterInNarrowLobes)
+{
+    struct Case {
+        Phase phase;
+        int rows;
+        double tolerance;
+    };
+    // Lines of the rule and of the hats coincide across single lobes; in azimuth, and for two
+    // lobes, the error is about 1/12 of the square of a step's share of a hat. Measured: 5e-7,
+    // 8e-5.
+    const DirectionHats hats{6, 12};
+    const Case cases[] = {{{-0.9f, 0.0f, 0.0f}, 12, 3e-6},
+                          {{0.95f, 0.0f, 0.0f}, 12, 3e-6},
+                          {{0.999f, 0.0f, 0.0f}, 12, 3e-6},
+                          {{0.8f, -0.5f, 0.3f}, 300, 3e-4}};
+    const auto cached = transmittances(two_clouds(), hats);
+    for (const EnvironmentLight& sky : {constant_sky(), sunny_sky()}) {
+        for (const Case& c : cases) {
+            const Media media = clouds_with(c.phase, Phase{});
+            const EnvironmentCache cache(cached, mean_radiance(sky, hats), media, camera);
+            const Bounds3 bounds = test::bounds_of(media);
+            for (uint32_t i = 0; i < 6; ++i) {
+                Rng rng(1, 0, Stream::Test, i, 0);
+                const Vec3 x = bounds.lo + (rng.uniform3() * 1.4f - 0.2f) * bounds.extent();
+                // The direction of the ray need not be the one of the bake, quite.
+                const Vec3 wo = glm::normalize(camera + 0.1f * rng.uniform3() - x);
+                const Vec3d sum =
+                    integral_over_lobes(cache, c.phase, x, wo, c.rows, c.rows > 12 ? 240 : 480);
+                const Vec3d exact(cache.inscatter(0, x));
+                EXPECT_LT(glm::length(sum - exact), c.tolerance * glm::length(exact)) << c.phase.g;
+                EXPECT_GT(exact.y, 0.0);
+            }
+        }
+    }
+}
+
 TEST(EnvironmentCache, DirectionalIntegratesToInscatter)
 {
-    const Phase phases[] = {{-0.9f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f},  {0.6f, 0.0f, 0.0f},
-                            {0.95f, 0.0f, 0.0f}, {0.8f, -0.5f, 0.3f}, {0.999f, 0.0f, 0.0f}};
-    for (const DirectionHats& hats : {DirectionHats{4, 8}, DirectionHats{3, 5}}) {
+    const Phase phases[] = {{0.0f, 0.0f, 0.0f},
+                            {0.2f, 0.0f, 0.0f},
+                            {0.6f, 0.0f, 0.0f},
+                            {-0.5f, 0.0f, 0.0f},
+                            {0.4f, -0.6f, 0.3f}};
+    for (const DirectionHats& hats : {DirectionHats{6, 12}, DirectionHats{9, 7}}) {
         const auto cached = transmittances(two_clouds(), hats);
         for (const EnvironmentLight& sky : {constant_sky(), sunny_sky()}) {
             for (const Phase& phase : phases) {
@@ -134,12 +189,12 @@ double exact_inscatter(const Media& media, const EnvironmentLight& sky, const Ph
 TEST(EnvironmentCache, InscatterIsCloseToTheTruth)
 {
     const EnvironmentLight sky = constant_sky();
-    for (const float g : {0.0f, 0.6f, -0.9f}) {
+    for (const float g : {0.0f, 0.6f, -0.9f, 0.95f}) {
         const Media media = clouds_with({g, 0.0f, 0.0f}, {g, 0.0f, 0.0f});
         const EnvironmentCache cache = make_cache(media, sky, {6, 12});
         double error = 0.0;
         double square = 0.0;
-        for (uint32_t i = 0; i < 60; ++i) {
+        for (uint32_t i = 0; i < 30; ++i) {
             Rng rng(2, 0, Stream::Test, i, 0);
             const Vec3 x = Vec3(-0.5f) + rng.uniform3();
             if (!(test::sigma_of(media, x) > 0.0f)) continue;
@@ -148,8 +203,7 @@ TEST(EnvironmentCache, InscatterIsCloseToTheTruth)
             error += (cached - exact) * (cached - exact);
             square += exact * exact;
         }
-        // Measured: 9e-3, 5e-3 and 0.21; a lobe of g = -0.9 falls between the directions.
-        EXPECT_LT(error, (std::abs(g) > 0.8f ? 0.4 : 0.02) * square) << g;
+        EXPECT_LT(error, 0.06 * square) << g;  // measured: 0.007, 0.004, 0.038, 0.010
         EXPECT_GT(square, 0.0);
     }
 }
@@ -195,7 +249,7 @@ TEST(EnvironmentCache, BakingAgainIsAFreshBuild)
     const EnvironmentCache fresh = make_cache(media, sunny_sky(), {4, 8}, there);
     EXPECT_EQ(moved.inscatter(0, x), fresh.inscatter(0, x));
     const Vec3 wi = glm::normalize(Vec3(1.0f, 2.0f, 3.0f));
-    EXPECT_EQ(moved.directional(0, x, wi), fresh.directional(0, x, wi));
+    EXPECT_EQ(moved.directional(0, x, wi, wi), fresh.directional(0, x, wi, wi));
 }
 
 TEST(EnvironmentCache, DefinedForEmptyMediaAndStrangePoints)
@@ -203,7 +257,7 @@ TEST(EnvironmentCache, DefinedForEmptyMediaAndStrangePoints)
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const Vec3 up(0.0f, 1.0f, 0.0f);
     EXPECT_EQ(EnvironmentCache().inscatter(0, up), Spectrum(0.0f));
-    EXPECT_EQ(EnvironmentCache().directional(0, up, up), Spectrum(0.0f));
+    EXPECT_EQ(EnvironmentCache().directional(0, up, up, up), Spectrum(0.0f));
     Media empty;
     Volume nothing = test::cube_volume(9, 2.0f, [](Vec3) { return 0.0f; });
     nothing.phase.g = 0.95f;
@@ -215,7 +269,7 @@ TEST(EnvironmentCache, DefinedForEmptyMediaAndStrangePoints)
             const EnvironmentCache cache = make_cache(media, sunny_sky(), {4, 8}, eye);
             for (const float bad : {0.0f, nan, infinity, -infinity, 1e30f}) {
                 const Spectrum S = cache.inscatter(0, Vec3(bad, 0.0f, bad));
-                const Spectrum f = cache.directional(0, Vec3(0.0f, bad, 0.0f), Vec3(bad));
+                const Spectrum f = cache.directional(0, Vec3(0.0f, bad, 0.0f), up, Vec3(bad));
                 EXPECT_TRUE(is_finite(S) && std::min({S.x, S.y, S.z}) >= 0.0f) << bad;
                 EXPECT_TRUE(is_finite(f) && std::min({f.x, f.y, f.z}) >= 0.0f) << bad;
             }
@@ -230,7 +284,8 @@ TEST(EnvironmentCache, CameraOnANodeStaysFinite)
     const SmokeLattice& lattice = cached->lattice();
     const Vec3 eye = lattice.position(lattice.nodes[lattice.nodes.size() / 2]);
     const EnvironmentCache cache(cached, mean_radiance(constant_sky(), cached->hats()), media, eye);
-    const Vec3d sum = integral_over_directions(cache, 0, eye, cached->hats());
+    const Vec3d sum =
+        integral_over_lobes(cache, media.volumes[0].phase, eye, Vec3(0.0f, 0.0f, 1.0f), 8, 480);
     const Vec3d exact(cache.inscatter(0, eye));
     EXPECT_TRUE(is_finite(Vec3(exact)));
     EXPECT_LT(glm::length(sum - exact), 1e-5 * glm::length(exact));
@@ -247,7 +302,8 @@ TEST(EnvironmentCache, DoesNotDependOnTheThreadCount)
                 Rng rng(4, 0, Stream::Test, i, 0);
                 const Vec3 x = Vec3(-1.0f) + 2.0f * rng.uniform3();
                 out.push_back(cache.inscatter(0, x));
-                out.push_back(cache.directional(0, x, sample_sphere(rng.uniform2())));
+                out.push_back(
+                    cache.directional(0, x, Vec3(1.0f, 0.0f, 0.0f), sample_sphere(rng.uniform2())));
             }
         });
         return out;

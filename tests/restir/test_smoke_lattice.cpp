@@ -22,7 +22,7 @@ TEST(SmokeLattice, SmokeHasEightActiveNodesAroundIt)
             const SmokeLattice::Corners corners = lattice.corners(x);
             Vec3 mean(0.0f);
             for (int n = 0; n < 8; ++n) {
-                const Vec3i node = corners.first + Vec3i(n & 1, n >> 1 & 1, n >> 2);
+                const Vec3i node = corners.node(n);
                 mean += corners.weight[n] * lattice.position(node);
                 ASSERT_EQ(corners.slot[n], lattice.slots[lattice.index(node)]);
                 if (corners.slot[n] != 0) {
