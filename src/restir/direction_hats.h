@@ -20,6 +20,13 @@ struct DirectionHats {
     /// Middle of area k in [0, count()), azimuth fastest [unit].
     [[nodiscard]] Vec3 centre(int k) const;
 
+    /// The area opposite to area k; -1 for odd numbers of azimuths, which have none.
+    [[nodiscard]] int opposite(int k) const
+    {
+        if (azimuths % 2 != 0) return -1;
+        return (bands - 1 - k / azimuths) * azimuths + (k + azimuths / 2) % azimuths;
+    }
+
     /// The hats that are not 0 at a direction, and their values there; they sum to 1.
     struct Weights {
         int index[4];

@@ -158,6 +158,7 @@ void environments(Media media, const std::vector<Vec3>& points)
         float node_voxels;
         float map_voxels;
     };
+    media.volumes[0].phase.g = 0.3f;
     for (const Shape& shape : {Shape{{4, 8}, 4.0f, 8.0f},
                                {{4, 8}, 4.0f, 4.0f},
                                {{6, 12}, 4.0f, 8.0f},

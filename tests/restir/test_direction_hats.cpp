@@ -68,6 +68,19 @@ TEST(DirectionHats, AllCoverTheSameSolidAngle)
     }
 }
 
+TEST(DirectionHats, OppositeAreasLieOpposite)
+{
+    for (const DirectionHats& hats : shapes) {
+        for (int k = 0; k < hats.count(); ++k) {
+            const int opposite = hats.opposite(k);
+            EXPECT_EQ(opposite < 0, hats.azimuths % 2 != 0);
+            if (opposite < 0) continue;
+            EXPECT_EQ(hats.opposite(opposite), k);
+            EXPECT_LT(glm::length(hats.centre(k) + hats.centre(opposite)), 1e-6f);
+        }
+    }
+}
+
 TEST(DirectionHats, ContinuousOverSeamAndPoles)
 {
     const DirectionHats hats{6, 12};
