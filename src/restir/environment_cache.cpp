@@ -64,8 +64,11 @@ Spectrum EnvironmentCache::inscatter(int phase, Vec3 x) const
 Spectrum EnvironmentCache::directional(int phase, Vec3 x, Vec3 wo, Vec3 wi) const
 {
     if (inscatter_.empty()) return Spectrum(0.0f);
-    return std::visit([&](const auto& light) { return light.directional(nodes_, x, wo, wi); },
-                      inscatter_[static_cast<size_t>(phase)]);
+    const Inscatter& light = inscatter_[static_cast<size_t>(phase)];
+    if (const auto* wide = std::get_if<WideInscatter>(&light)) {
+        return wide->directional(nodes_, x, wi);
+    }
+    return std::get<NarrowInscatter>(light).directional(nodes_, x, wo, wi);
 }
 
 }  // namespace mote

@@ -158,7 +158,6 @@ void environments(Media media, const std::vector<Vec3>& points)
         float node_voxels;
         float map_voxels;
     };
-    media.volumes[0].phase.g = 0.3f;
     for (const Shape& shape : {Shape{{4, 8}, 4.0f, 8.0f},
                                {{4, 8}, 4.0f, 4.0f},
                                {{6, 12}, 4.0f, 8.0f},
@@ -171,6 +170,7 @@ void environments(Media media, const std::vector<Vec3>& points)
         params.node_budget = 1'000'000;
         const auto T = std::make_shared<const DirectionTransmittance>(media, params);
         const auto radiance = mean_radiance(sky, shape.hats);
+        media.volumes[0].phase.g = 0.3f;
         const EnvironmentCache cache(T, radiance, media, eye);
         const double ns = directional_nanoseconds(
             points, [&](Vec3 x, Vec3 wi) { return T->transmittance(x, wi); });
