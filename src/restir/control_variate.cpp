@@ -120,7 +120,7 @@ class InfiniteLights {
         for (int i = 0; i < edge.media.count; ++i) {
             const Mixture::Part& part = edge.media.parts[i];
             sum += part.share * part.albedo *
-                   frame_.caches->environment->directional(phase_index(part), edge.x, wi);
+                   frame_.caches->environment->directional(phase_index(part), edge.x, -ray_.d, wi);
         }
         return sum;
     }

@@ -16,13 +16,16 @@ Vec3 DirectionHats::centre(int k) const
 
 DirectionHats::Weights DirectionHats::at(Vec3 wi) const
 {
-    const auto last_band = static_cast<float>(bands - 1);
+    return at_square(0.5f - 0.5f * wi.y, std::atan2(wi.x, wi.z) * (0.5f * inv_pi));
+}
+
+DirectionHats::Weights DirectionHats::at_square(float u, float v) const
+{
     const auto turn = static_cast<float>(azimuths);
     // Not-a-number becomes 0 in the clamps.
-    const float u = (0.5f - 0.5f * wi.y) * static_cast<float>(bands) - 0.5f;
-    const float band = std::min(std::max(0.0f, u), last_band);
-    const float angle = std::atan2(wi.x, wi.z) * (0.5f * inv_pi) * turn;  // -turn/2 .. turn/2
-    const float azimuth = std::min(std::max(0.0f, angle + turn - 0.5f), 2.0f * turn);
+    const float band = std::min(std::max(0.0f, u * static_cast<float>(bands) - 0.5f),
+                                static_cast<float>(bands - 1));
+    const float azimuth = std::min(std::max(0.0f, (v + 2.0f) * turn - 0.5f), 4.0f * turn);
     const int i = std::min(static_cast<int>(band), std::max(bands - 2, 0));
     const int j = static_cast<int>(azimuth);
     const float fu = band - static_cast<float>(i);

@@ -20,6 +20,13 @@ struct DirectionHats {
     /// Middle of area k in [0, count()), azimuth fastest [unit].
     [[nodiscard]] Vec3 centre(int k) const;
 
+    /// The area opposite to area k; -1 for odd numbers of azimuths, which have none.
+    [[nodiscard]] int opposite(int k) const
+    {
+        if (azimuths % 2 != 0) return -1;
+        return (bands - 1 - k / azimuths) * azimuths + (k + azimuths / 2) % azimuths;
+    }
+
     /// The hats that are not 0 at a direction, and their values there; they sum to 1.
     struct Weights {
         int index[4];
@@ -28,6 +35,10 @@ struct DirectionHats {
 
     /// wi [unit]; any finite or non-finite vector gives valid indices and weights.
     [[nodiscard]] Weights at(Vec3 wi) const;
+
+    /// The same on the unit square that the sphere maps to: u in [0,1] across the bands, v in turns
+    /// in [-1,1] along the azimuths.
+    [[nodiscard]] Weights at_square(float u, float v) const;
 };
 
 /// Mean radiance of the environment under each hat [W/(m^2 sr)], count() values: summed, times

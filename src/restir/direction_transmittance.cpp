@@ -1,6 +1,7 @@
 #include "restir/direction_transmittance.h"
 
 #include "core/parallel.h"
+#include "restir/coarse_media.h"
 #include "restir/media_extent.h"
 #include "restir/transmittance_map.h"
 
@@ -21,18 +22,32 @@ DirectionTransmittance::DirectionTransmittance(const Media& media,
 
     TransmittanceMapParams map_params;
     map_params.spacing = params.map_spacing > 0.0f ? params.map_spacing : lattice_.spacing;
-    // One band at a time: rows are then written in runs, and few maps are alive at once.
-    for (int band = 0; band < hats_.bands && slots > 1; ++band) {
+    // The same lines in both directions: one walk answers two.
+    map_params.max_depth = infinity;
+    std::vector<int> walked;
+    for (int k = 0; k < hats_.count() && slots > 1; ++k) {
+        if (hats_.opposite(k) < 0 || k < hats_.opposite(k)) walked.push_back(k);
+    }
+    // Detail below half the distance between rays would only alias.
+    const Media coarse = coarse_media(media, 0.5f * map_params.spacing);
+    constexpr size_t batch = 12;  // maps alive at once
+    for (size_t first = 0; first < walked.size(); first += batch) {
+        const size_t count = std::min(batch, walked.size() - first);
         std::vector<TransmittanceMap> maps;
-        for (int j = 0; j < hats_.azimuths; ++j) {
-            maps.emplace_back(media, hats_.centre(band * hats_.azimuths + j), map_params);
+        for (size_t i = 0; i < count; ++i) {
+            maps.emplace_back(coarse, hats_.centre(walked[first + i]), map_params);
             stats_.rays += maps.back().stats().rays;
         }
         parallel_for(slots, 256, [&](size_t begin, size_t end) {
             for (size_t slot = std::max<size_t>(begin, 1); slot < end; ++slot) {
                 const Vec3 x = lattice_.position(lattice_.nodes[slot]);
-                float* row = rows_.data() + slot * row_size_ + band * hats_.azimuths;
-                for (const TransmittanceMap& map : maps) *row++ = map.transmittance(x);
+                float* row = rows_.data() + slot * row_size_;
+                for (size_t i = 0; i < count; ++i) {
+                    const int k = walked[first + i];
+                    const int opposite = hats_.opposite(k);
+                    row[k] = maps[i].transmittance(x);
+                    if (opposite >= 0) row[opposite] = std::exp(-maps[i].depth_behind(x));
+                }
             }
         });
     }

@@ -14,7 +14,8 @@ struct DirectionTransmittanceParams {
 };
 
 /// Transmittance from every place in the smoke towards a set of directions all around: one
-/// TransmittanceMap per direction, resampled to the nodes of one lattice. Approximate: see there.
+/// TransmittanceMap per pair of opposite directions, through media coarsened to half the distance
+/// between its rays, resampled to the nodes of one lattice. Approximate: see there.
 /// Knows nothing of lights, so it stays valid while the media do. Memory: 4 bytes per active node
 /// and direction.
 class DirectionTransmittance {

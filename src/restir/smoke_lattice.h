@@ -15,6 +15,8 @@ struct SmokeLattice {
         Vec3i first{0};  ///< lattice coordinates of node 0; node n adds the bits of n
         int32_t slot[8];
         float weight[8];
+
+        [[nodiscard]] Vec3i node(int n) const { return first + Vec3i(n & 1, n >> 1 & 1, n >> 2); }
     };
 
     Vec3 origin{0.0f};  ///< of node (0,0,0) [m]

@@ -122,9 +122,10 @@ RayLattice lattice_within(int64_t budget, const OrientedBox& box, Vec3d w, doubl
 struct PlaneWriter {
     float* depths;
     int count;
-    float step;           ///< world distance between planes [m]
-    float t0;             ///< world distance at which the walk starts [m]
-    float scale;          ///< sigma_t per density
+    float step;   ///< world distance between planes [m]
+    float t0;     ///< world distance at which the walk starts [m]
+    float scale;  ///< sigma_t per density
+    float max_depth;
     float depth = 0.0f;   ///< so far
     int plane = 0;        ///< next to write
     float next_s = 0.0f;  ///< its distance from the start of the walk
@@ -145,7 +146,7 @@ struct PlaneWriter {
             set_next();
         }
         depth += scale * cell.integral();
-        return depth < TransmittanceMap::max_depth && plane < count;
+        return depth < max_depth && plane < count;
     }
 
     void finish()
@@ -165,13 +166,17 @@ struct PlaneWriter {
 };
 
 void add_volume(const Volume& volume, const GridFrame& frame, const Ray& ray,
-                const RayLattice& lattice, float* depths)
+                const RayLattice& lattice, float max_depth, float* depths)
 {
     const BrickGrid& grid = *volume.density;
     const LocalRay local = make_local_ray(grid, frame, ray, {0.0f, infinity});
     if (local.misses()) return;
-    PlaneWriter writer{depths, lattice.count.z, static_cast<float>(lattice.step),
-                       static_cast<float>(local.t0), volume.density_scale};
+    PlaneWriter writer{depths,
+                       lattice.count.z,
+                       static_cast<float>(lattice.step),
+                       static_cast<float>(local.t0),
+                       volume.density_scale,
+                       max_depth};
     writer.start();
     for_each_brick(grid, local, [&](const BrickSpan& span) {
         const BrickRange& range = grid.ranges[static_cast<size_t>(span.brick)];
@@ -231,7 +236,8 @@ TransmittanceMap::TransmittanceMap(const Media& media, Vec3 wi,
             const Vec3d q = box_from_lattice * (node - lattice.offset);
             const Ray ray{Vec3(box->centre + box->axes * q), -wi / length, cache_time};
             for (const Walked& one : walked) {
-                add_volume(*one.volume, one.frame, ray, lattice, depths_.data() + n * planes_);
+                add_volume(*one.volume, one.frame, ray, lattice, params.max_depth,
+                           depths_.data() + n * planes_);
             }
         }
     });

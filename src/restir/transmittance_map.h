@@ -11,7 +11,10 @@ struct TransmittanceMapParams {
     /// Distance between rays and between stored depths [m]; 0: twice the finest voxel. The error of
     /// exp(-depth) grows, the cost falls, with about its square.
     float spacing = 0.0f;
-    int64_t node_budget = 8'000'000;  ///< [8, ..]; 4 bytes each. The spacing grows to fit.
+    int64_t node_budget = 8'000'000;  ///< 4 bytes each. The spacing grows to fit.
+    /// A ray's walk through a volume ends when the depth exceeds this: exp(-40) is nothing.
+    /// Infinite for depth_behind().
+    float max_depth = 40.0f;
 };
 
 /// Optical depth from anywhere towards one direction, through all media together: a light at
@@ -37,28 +40,27 @@ class TransmittanceMap {
     TransmittanceMap(const Media& media, Vec3 wi, const TransmittanceMapParams& params = {});
 
     /// From world point x towards the light, finite, >= 0. Exactly 0 on the light's side of all
-    /// media and beside them; the full depth behind them. Depths end at about max_depth.
+    /// media and beside them; the full depth behind them.
     [[nodiscard]] float optical_depth(Vec3 x) const
     {
-        // Not-a-number becomes 0 here.
-        const Vec3 p = lattice_from_world_.point(x - centre_);
-        const float u = std::min(std::max(0.0f, p.x), last_.x);
-        const float v = std::min(std::max(0.0f, p.y), last_.y);
-        const float z = std::min(std::max(0.0f, p.z), last_.z);
-        const int i = std::min(static_cast<int>(u), last_cell_.x);
-        const int j = std::min(static_cast<int>(v), last_cell_.y);
-        const int k = std::min(static_cast<int>(z), last_cell_.z);
-        const float* row = depths_.data() + static_cast<size_t>(j) * line_ +
-                           static_cast<size_t>(i) * planes_ + static_cast<size_t>(k);
-        const float fu = u - static_cast<float>(i);
-        const float fv = v - static_cast<float>(j);
-        const float fz = z - static_cast<float>(k);
-        const auto along = [&](const float* r) { return r[0] + fz * (r[1] - r[0]); };
-        const float a = along(row);
-        const float b = along(row + line_);
-        const float low = a + fu * (along(row + planes_) - a);
-        const float high = b + fu * (along(row + line_ + planes_) - b);
-        return low + fv * (high - low);
+        const Place p = place(x);
+        const auto along = [&](const float* row) {
+            return row[p.plane] + p.f.z * (row[p.plane + 1] - row[p.plane]);
+        };
+        return across(p, along);
+    }
+
+    /// From x away from the light: the rest of the ray. Needs max_depth = infinity. Depths of
+    /// millions lose their digits and count as opaque.
+    [[nodiscard]] float depth_behind(Vec3 x) const
+    {
+        const Place p = place(x);
+        const auto rest = [&](const float* row) {
+            const float depth = row[p.plane] + p.f.z * (row[p.plane + 1] - row[p.plane]);
+            const float total = row[planes_ - 1];
+            return std::max(0.0f, total - depth) + 2e-7f * total;
+        };
+        return across(p, rest);
     }
 
     /// exp(-optical_depth(x)), [0,1].
@@ -68,11 +70,41 @@ class TransmittanceMap {
     [[nodiscard]] float spacing() const { return spacing_; }
     [[nodiscard]] const CacheStats& stats() const { return stats_; }
 
-    /// Walks stop at this optical depth per volume: exp(-40) is nothing.
-    static constexpr float max_depth = 40.0f;
-
   private:
+    /// A point in the lattice.
+    struct Place {
+        const float* row;  ///< depths of the first of the four rays around it
+        size_t plane;      ///< the plane before it
+        Vec3 f;            ///< position between rays and planes, [0,1]
+    };
+
     void clear();
+
+    [[nodiscard]] Place place(Vec3 x) const
+    {
+        // Not-a-number becomes 0 here.
+        const Vec3 p = lattice_from_world_.point(x - centre_);
+        const float u = std::min(std::max(0.0f, p.x), last_.x);
+        const float v = std::min(std::max(0.0f, p.y), last_.y);
+        const float z = std::min(std::max(0.0f, p.z), last_.z);
+        const int i = std::min(static_cast<int>(u), last_cell_.x);
+        const int j = std::min(static_cast<int>(v), last_cell_.y);
+        const int k = std::min(static_cast<int>(z), last_cell_.z);
+        return {depths_.data() + static_cast<size_t>(j) * line_ + static_cast<size_t>(i) * planes_,
+                static_cast<size_t>(k),
+                {u - static_cast<float>(i), v - static_cast<float>(j), z - static_cast<float>(k)}};
+    }
+
+    /// Bilinear between the four rays around a place.
+    template <class OnRay>
+    [[nodiscard]] float across(const Place& p, OnRay&& on_ray) const
+    {
+        const float a = on_ray(p.row);
+        const float b = on_ray(p.row + line_);
+        const float low = a + p.f.x * (on_ray(p.row + planes_) - a);
+        const float high = b + p.f.x * (on_ray(p.row + line_ + planes_) - b);
+        return low + p.f.y * (high - low);
+    }
 
     Affine lattice_from_world_{Mat3(0.0f), Vec3(0.0f)};  ///< of x - centre_: ray, ray, plane
     Vec3 centre_{0.0f};
