@@ -77,7 +77,7 @@ class CellWalk {
         cell.s1 = _mm_cvtss_f32(end);
         const __m128 middle = _mm_mul_ps(_mm_add_ps(end, _mm_set1_ps(cell.s0)), _mm_set1_ps(0.5f));
         const __m128 f = _mm_sub_ps(o_, cell_);
-        interpolate(_mm_add_ps(f, _mm_mul_ps(middle, d_)), _mm_add_ps(f, _mm_mul_ps(end, d_)));
+        interpolate(mul_add(middle, d_, f), mul_add(end, d_, f));
         next_ = _mm_add_ps(next_, _mm_and_ps(crosses, pitch_));
         cell_ = _mm_add_ps(cell_, _mm_and_ps(crosses, step_));
         values_ += ((mask & 1) != 0 ? jump_[0] : 0) + ((mask & 2) != 0 ? jump_[1] : 0) +
@@ -90,17 +90,27 @@ class CellWalk {
   private:
     static __m128 lanes(Vec3 v) { return _mm_setr_ps(v.x, v.y, v.z, 0.0f); }
 
+    /// a b + c, in one rounding where the build's machine has it.
+    static __m128 mul_add(__m128 a, __m128 b, __m128 c)
+    {
+#ifdef __FMA__
+        return _mm_fmadd_ps(a, b, c);
+#else
+        return _mm_add_ps(_mm_mul_ps(a, b), c);
+#endif
+    }
+
     static __m128 pairs(const float* p, const float* q)
     {
         const __m128d low = _mm_load_sd(reinterpret_cast<const double*>(p));
         return _mm_castpd_ps(_mm_loadh_pd(low, reinterpret_cast<const double*>(q)));
     }
 
-    /// interpolate_cell at two points of the cell at once: the same operations, so the same bits.
+    /// interpolate_cell at two points of the cell at once.
     void interpolate(__m128 middle, __m128 end)
     {
         const auto lerp = [](__m128 a, __m128 b, __m128 t) {
-            return _mm_add_ps(a, _mm_mul_ps(t, _mm_sub_ps(b, a)));
+            return mul_add(t, _mm_sub_ps(b, a), a);
         };
         const __m128 at_x0 = pairs(values_, values_ + 9);
         const __m128 at_x1 = pairs(values_ + 81, values_ + 90);
