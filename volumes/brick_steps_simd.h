@@ -17,7 +17,7 @@ struct BrickAxis {
     Real first;  // 0 upwards, 1 downwards: the low border of `reach` positions counts from there
     Real last;   // position of the table
     Mask moves;
-    Real c;      // this position
+    Real c;  // this position
 
     BrickAxis(const RayBlock& rays, int axis, size_t i, int32_t count)
         : o(Lanes::load(rays.o[axis] + i)),
@@ -101,8 +101,8 @@ void step_lanes(const BrickTable& table, RayBlock& rays, size_t i, int steps, Pi
         const Real border_z = z.border(reach);
         const Real border = Lanes::min(Lanes::min(border_x, border_y), border_z);
         const Real exit = Lanes::min(border, s1);
-        const auto hits = Lanes::both(Lanes::less(zero, Lanes::to_real(entry)),
-                                      Lanes::less(s, exit));
+        const auto hits =
+            Lanes::both(Lanes::less(zero, Lanes::to_real(entry)), Lanes::less(s, exit));
         const Real length = Lanes::sub(exit, s);
         const Real px = x.in_brick(s);
         const Real py = y.in_brick(s);

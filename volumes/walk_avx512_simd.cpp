@@ -81,9 +81,8 @@ struct Lanes {
     static Real to_real(Int a) { return _mm512_cvtepi32_ps(a); }
     static Int count_from(int32_t a)
     {
-        return _mm512_add_epi32(
-            _mm512_set1_epi32(a),
-            _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15));
+        return _mm512_add_epi32(_mm512_set1_epi32(a), _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8,
+                                                                        9, 10, 11, 12, 13, 14, 15));
     }
     static Int look_up(const BrickTable& table, Real x, Real y, Real z)
     {

@@ -35,11 +35,11 @@ struct RayBlock {
 struct PieceList {
     static constexpr size_t capacity = 2048;
 
-    float p[3][capacity + lane_group];      ///< entry point in the brick, within [0,8]
-    float length[capacity + lane_group];    ///< > 0 [m]
-    int32_t brick[capacity + lane_group];   ///< number in BrickGrid::values
-    int32_t ray[capacity + lane_group];     ///< in the RayBlock
-    int32_t cells[capacity + lane_group];   ///< that it crosses, up to rounding: 1 to 22
+    float p[3][capacity + lane_group];     ///< entry point in the brick, within [0,8]
+    float length[capacity + lane_group];   ///< > 0 [m]
+    int32_t brick[capacity + lane_group];  ///< number in BrickGrid::values
+    int32_t ray[capacity + lane_group];    ///< in the RayBlock
+    int32_t cells[capacity + lane_group];  ///< that it crosses, up to rounding: 1 to 22
     size_t count;
 };
 

@@ -33,8 +33,7 @@ struct Lanes {
     static Int count_from(int32_t a) { return a; }
     static Int look_up(const BrickTable& table, Real x, Real y, Real z)
     {
-        return table.entries[(to_int(z) * table.count[1] + to_int(y)) * table.count[0] +
-                             to_int(x)];
+        return table.entries[(to_int(z) * table.count[1] + to_int(y)) * table.count[0] + to_int(x)];
     }
     static Real select(Mask m, Real a, Real b) { return m ? a : b; }
     static Real add_if(Mask m, Real a, Real b) { return m ? a + b : a; }
