@@ -45,6 +45,17 @@ Json to_json(const FrameRecord& r)
     j["paths"] = r.render.paths;
     j["dropped_non_finite"] = r.render.dropped_non_finite;
     j["truncated_paths"] = r.render.truncated_paths;
+    if (r.render.camera_rays > 0 || r.render.caches_built + r.render.caches_reused > 0) {
+        j["restir"] = {{"cache_cpu_s", r.render.cache_cpu_seconds},
+                       {"caches_built", r.render.caches_built},
+                       {"caches_reused", r.render.caches_reused},
+                       {"camera_rays", r.render.camera_rays},
+                       {"light_rays", r.render.light_rays},
+                       {"cells", r.render.cells},
+                       {"candidates", r.render.candidates},
+                       {"histories_used", r.render.histories_used},
+                       {"neighbours_used", r.render.neighbours_used}};
+    }
     j["peak_memory_bytes"] = r.peak_memory;
     return j;
 }

@@ -56,6 +56,17 @@ std::vector<AovInfo> make_table()
          {"opticalDepth.Y"},
          true,
          "Optical depth of all volumes, in closed form per camera ray, mean over the pixel"},
+        {Aov::Restir,
+         "restir",
+         {"restir.M", "restir.W", "restir.age"},
+         true,
+         "The pixel's reservoir, mean over the passes: confidence M [passes], contribution weight W, "
+         "passes since its sample was drawn; 0 without reuse and of the path estimator"},
+        {Aov::Cost,
+         "cost",
+         {"cost.Y"},
+         true,
+         "Exact rays per pass, camera ray and light rays together; 0 of the path estimator"},
     };
 }
 

@@ -21,8 +21,10 @@ enum class Aov {
     Background,
     Transmittance,
     OpticalDepth,
+    Restir,
+    Cost,
 };
-inline constexpr size_t aov_count = 12;
+inline constexpr size_t aov_count = 14;
 
 /// One row of the table of layers.
 struct AovInfo {

@@ -99,6 +99,8 @@ void PassCounts::add(const PassCounts& other)
     light_rays.rays += other.light_rays.rays;
     light_rays.bricks += other.light_rays.bricks;
     light_rays.cells += other.light_rays.cells;
+    reuse.histories += other.reuse.histories;
+    reuse.neighbours += other.reuse.neighbours;
     candidates += other.candidates;
     truncated += other.truncated;
 }
@@ -127,6 +129,7 @@ void begin_pass(const PassInputs& inputs, const PassKey& key, int owner, PixelDo
     const float depth = domain.bins.depth();
     sample.transmittance = std::exp(-depth);
     sample.optical_depth = depth;
+    sample.exact_rays = domain.bins.empty() ? 0.0f : 1.0f;
     sample.background = seen_background(inputs, domain, sample.transmittance);
     if (frame.has_emission) {
         Rng rng = pass_rng(inputs, key, Stream::Shade);

@@ -6,6 +6,7 @@
 #include "render/film.h"
 #include "restir/control_variate.h"
 #include "restir/pixel_domain.h"
+#include "restir/reuse_passes.h"
 #include "scene/description.h"
 
 namespace mote {
@@ -32,6 +33,7 @@ struct PassKey {
 struct PassCounts {
     BinCounts bins;
     WalkCounts light_rays;
+    ReuseCounts reuse;
     int64_t candidates = 0;
     int64_t truncated = 0;  ///< passes whose light could have scattered on
 

@@ -7,7 +7,7 @@ namespace mote {
 bool FilmSample::is_finite() const
 {
     return mote::is_finite(L()) && std::isfinite(transmittance) && mote::is_finite(albedo) &&
-           std::isfinite(motion.x) && std::isfinite(motion.y) && !std::isnan(optical_depth) &&
+           std::isfinite(motion.x) && std::isfinite(motion.y) && !std::isnan(optical_depth) && mote::is_finite(reservoir) &&
            (!collided || std::isfinite(depth));
 }
 
@@ -32,6 +32,8 @@ bool PixelFilm::add(const FilmSample& sample)
     transmittance_ += static_cast<double>(sample.transmittance);
     exact_transmittance_ += std::exp(-tau);
     optical_depth_ += tau;
+    reservoir_.add(sample.reservoir);
+    exact_rays_ += static_cast<double>(sample.exact_rays);
     if (sample.collided) {
         ++collisions_;
         albedo_.add(sample.albedo);
@@ -112,6 +114,12 @@ void PixelFilm::layer(Aov aov, float (&values)[3]) const
             break;
         case Aov::OpticalDepth:
             values[0] = static_cast<float>(optical_depth_ / n);
+            break;
+        case Aov::Restir:
+            store(reservoir_.mean(count()));
+            break;
+        case Aov::Cost:
+            values[0] = static_cast<float>(exact_rays_ / n);
             break;
     }
 }

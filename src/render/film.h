@@ -22,6 +22,8 @@ struct FilmSample {
     Spectrum albedo{0.0f};
     Vec2 motion{0.0f};           ///< [px], v up
     float optical_depth = 0.0f;  ///< in closed form, where a layer needs it
+    Vec3 reservoir{0.0f};        ///< M, W, age
+    float exact_rays = 0.0f;     ///< towards camera and lights
 
     [[nodiscard]] Spectrum L() const { return direct + indirect + emission + background; }
     [[nodiscard]] bool is_finite() const;
@@ -52,10 +54,11 @@ class PixelFilm {
 
   private:
     RunningStats rgb_[3];
-    MeanSpectrum direct_, indirect_, emission_, background_, albedo_;
+    MeanSpectrum direct_, indirect_, emission_, background_, albedo_, reservoir_;
     double transmittance_ = 0.0;
     double exact_transmittance_ = 0.0;
     double optical_depth_ = 0.0;
+    double exact_rays_ = 0.0;
     double depth_ = 0.0;
     float nearest_ = infinity;
     int64_t collisions_ = 0;

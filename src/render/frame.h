@@ -21,6 +21,10 @@ struct FrameStats {
     int64_t light_rays = 0;          ///< traced exactly towards lights
     int64_t cells = 0;               ///< walked by both
     int64_t candidates = 0;
+    int64_t histories_used = 0;   ///< pixels and passes that had a history with confidence
+    int64_t neighbours_used = 0;  ///< reservoirs of neighbours that took part
+    int caches_built = 0;         ///< light caches made for this frame
+    int caches_reused = 0;        ///< taken over from the frame before
 };
 
 /// Asked by several threads, at every pixel and every few samples, so it must be cheap; true

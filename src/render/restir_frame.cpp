@@ -51,8 +51,9 @@ void trace_tile_pass(const PassInputs& inputs, const Tile& tile, uint32_t pass,
     }
     scratch.rays.trace(frame.scene->media, counts.light_rays);
     for (size_t i = 0; i < scratch.rays.size(); ++i) {
-        scratch.samples[static_cast<size_t>(scratch.rays.owners[i])].direct +=
-            scratch.rays.value(i);
+        FilmSample& sample = scratch.samples[static_cast<size_t>(scratch.rays.owners[i])];
+        sample.direct += scratch.rays.value(i);
+        sample.exact_rays += 1.0f;
     }
 }
 
@@ -97,6 +98,10 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
     stats.light_rays = static_cast<int64_t>(counts.light_rays.rays);
     stats.cells = counts.bins.cells + static_cast<int64_t>(counts.light_rays.cells);
     stats.candidates = counts.candidates;
+    stats.histories_used = counts.reuse.histories;
+    stats.neighbours_used = counts.reuse.neighbours;
+    stats.caches_built = history.caches->built;
+    stats.caches_reused = history.caches->reused;
     return finished;
 }
 

@@ -96,17 +96,24 @@ void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, DomainStore& do
             }
             domains.store(x, y, domain);
             ranges.push_back({first, candidates.size() - first});
+            sample.exact_rays += static_cast<float>(candidates.size() - first);
             for (size_t i = first; i < candidates.size(); ++i) {
                 const Candidate& c = candidates[i];
-                shadows.add(static_cast<int>(i), c.x, c.arrival.wi, c.arrival.distance,
-                            domain.ray.time, c.f, 104.0f);
+                if (frame.params.visibility == TargetVisibility::Cached) {
+                    candidates[i].f *= cached_visibility(frame, c.y, c.x, c.arrival);
+                } else {
+                    shadows.add(static_cast<int>(i), c.x, c.arrival.wi, c.arrival.distance,
+                                domain.ray.time, c.f, infinity);
+                }
             }
         }
     }
     n.candidates += static_cast<int64_t>(candidates.size());
     corrections.trace(frame.scene->media, n.light_rays);
     for (size_t i = 0; i < corrections.size(); ++i) {
-        samples[static_cast<size_t>(corrections.owners[i])]->direct += corrections.value(i);
+        FilmSample& sample = *samples[static_cast<size_t>(corrections.owners[i])];
+        sample.direct += corrections.value(i);
+        sample.exact_rays += 1.0f;
     }
     shadows.trace(frame.scene->media, n.light_rays);
     for (size_t i = 0; i < shadows.size(); ++i) {
@@ -167,7 +174,8 @@ bool render_reusing_passes(const PassInputs& inputs, const ReusePlan& plan,
             run.for_tiles([&](const Tile& tile, PassCounts& n) {
                 Combination scratch(temporal_rules(frame.params, still));
                 reuse_in_time({frame, now.domains, buffers.current}, before, still, tile,
-                              run.rng(Stream::Temporal, pass), scratch, out, n.light_rays);
+                              run.rng(Stream::Temporal, pass), scratch, out, n.light_rays,
+                              n.reuse);
             });
             std::swap(buffers.current, buffers.next);
         }
@@ -181,15 +189,24 @@ bool render_reusing_passes(const PassInputs& inputs, const ReusePlan& plan,
             run.for_tiles([&](const Tile& tile, PassCounts& n) {
                 Combination scratch(spatial_rules(frame.params));
                 reuse_in_space({frame, now.domains, buffers.current}, tile,
-                               run.rng(Stream::Spatial, pass), scratch, out, n.light_rays);
+                               run.rng(Stream::Spatial, pass), scratch, out, n.light_rays,
+                              n.reuse);
             });
             std::swap(buffers.current, buffers.next);
         }
         if (frame.params.spatial.feedback) keep();
+        if (frame.params.visibility != TargetVisibility::Exact) {
+            run.for_tiles([&](const Tile& tile, PassCounts& n) {
+                shade_chosen({frame, now.domains, buffers.current}, tile, buffers.colors,
+                             n.light_rays);
+            });
+        }
         if (run.stopped) return false;
         for (size_t i = 0; i < pixels.size(); ++i) {
             FilmSample& sample = buffers.samples.data()[i];
+            const Reservoir& r = buffers.current.data()[i].r;
             sample.direct += buffers.colors.data()[i];
+            sample.reservoir = Vec3(r.M, r.W, r.age);
             dropped += pixels.data()[i].add(sample) ? 0 : 1;
         }
         before = std::move(now);

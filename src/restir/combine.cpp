@@ -5,13 +5,17 @@
 namespace mote {
 namespace {
 
-/// Targets are compared between pixels, so their shadow rays end nowhere before floats do.
-constexpr float whole_depth = 104.0f;
-
 void ask(LightRays& rays, size_t owner, const Candidate& c, float time, float scale)
 {
     rays.add(static_cast<int>(owner), c.x, c.arrival.wi, c.arrival.distance, time, scale * c.f,
-             whole_depth);
+             infinity);  // targets are compared between pixels: no ray may end early
+}
+
+/// What a target knows of a candidate's shadow without a ray.
+float known_visibility(TargetVisibility visibility, const FrameDomain& frame, const Candidate& c)
+{
+    if (visibility != TargetVisibility::Cached || !(max_component(c.f) > 0.0f)) return 1.0f;
+    return cached_visibility(frame, c.y, c.x, c.arrival);
 }
 
 }  // namespace
@@ -63,13 +67,22 @@ void Combination::add_other(const ShiftEnd& own, const ShiftEnd& from, const Res
             out.y = shifted->y;
             out.jacobian = shifted->jacobian;
             out.f = c.f;
-            ask(here_, index, c, own.domain.ray.time, 1.0f);
+            if (rules_.visibility == TargetVisibility::Exact) {
+                ask(here_, index, c, own.domain.ray.time, 1.0f);
+            } else {
+                out.shadow = known_visibility(rules_.visibility, own.frame, c);
+            }
         }
     }
     const Reservoir& mine = pixel.own->r;
     if (mine.W > 0.0f) {
         if (const auto shifted = shift(rules_.shift, mine.y, own, from, map.inverse())) {
             const Candidate c = evaluate(from.frame, from.domain, shifted->y);
+            if (rules_.visibility != TargetVisibility::Exact) {
+                out.own_there = shifted->jacobian * luminance(c.f) *
+                                known_visibility(rules_.visibility, from.frame, c);
+                return;
+            }
             ask(there_, index, c, from.domain.ray.time, shifted->jacobian);
         }
     }

@@ -15,6 +15,7 @@ namespace mote {
 struct CombineRules {
     ShiftKind shift = ShiftKind::RandomNumbers;
     MisForm mis = MisForm::Pairwise;
+    TargetVisibility visibility = TargetVisibility::Exact;
 };
 
 /// A pixel's own reservoir from its candidates, whose f are to be complete, shadows included:
@@ -26,7 +27,7 @@ struct CombineRules {
 /// shadow rays of all evaluations are traced in one go:
 ///   1. begin_pixel, then add_other for each reservoir to reuse: shifts the other's sample here and
 ///      the own sample there, and asks for their shadow rays;
-///   2. trace;
+///   2. trace (targets that know of shadows by caches only ask for none);
 ///   3. finish each pixel: weights, choice, and the sum of all inputs' contributions.
 /// Targets are luminances of exact contributions, shadows included, each in the domain it is
 /// evaluated in: what another pixel or the pass before could have drawn decides its weight. Nothing

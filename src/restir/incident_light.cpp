@@ -135,6 +135,24 @@ float sampled_inscatter(const FrameDomain& frame, Vec3 x, Vec3 wo)
     return sum;
 }
 
+float cached_visibility(const FrameDomain& frame, const PathSample& y, Vec3 x,
+                        const Arrival& arrival)
+{
+    constexpr float floor = 1e-3f;
+    const SampledLight& light = frame.lights[static_cast<size_t>(y.light)];
+    if (light.kind == SampledLightKind::Environment && frame.caches->directions) {
+        const float T = frame.caches->directions->transmittance(x, arrival.wi);
+        return std::isfinite(T) ? std::max(T, floor) : 1.0f;
+    }
+    if (light.kind != SampledLightKind::Distant) return 1.0f;
+    for (const LightCaches::Distant& distant : frame.caches->distant) {
+        if (distant.light != light.index) continue;
+        const float T = distant.map->transmittance(x);
+        return std::isfinite(T) ? std::max(T, floor) : 1.0f;
+    }
+    return 1.0f;
+}
+
 SampledChoice choose_light(const FrameDomain& frame, Vec3 x, Vec3 wo, float u)
 {
     int index = 0;

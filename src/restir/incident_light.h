@@ -27,6 +27,11 @@ struct Arrival {
 /// the caches: any value >= 0.
 [[nodiscard]] float sampled_inscatter(const FrameDomain& frame, Vec3 x, Vec3 wo);
 
+/// Transmittance from x to a sample's light as far as the caches know it: of lights at infinity,
+/// floored above 0; 1 of all others.
+[[nodiscard]] float cached_visibility(const FrameDomain& frame, const PathSample& y, Vec3 x,
+                                      const Arrival& arrival);
+
 /// A light chosen for a candidate.
 struct SampledChoice {
     int light = -1;    ///< into FrameDomain::lights; -1: none

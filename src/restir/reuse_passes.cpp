@@ -33,7 +33,7 @@ void finish_tile(const Tile& tile, const PixelRng& rng, const Combination& combi
 
 CombineRules temporal_rules(const RestirParams& params, bool still)
 {
-    CombineRules rules{params.shift, MisForm::Pairwise};
+    CombineRules rules{params.shift, MisForm::Pairwise, params.visibility};
     switch (params.mis) {
         case ReuseMis::Auto:
             // Measured: balance has half the noise at rest, the defensive form in motion.
@@ -53,12 +53,13 @@ CombineRules temporal_rules(const RestirParams& params, bool still)
 
 CombineRules spatial_rules(const RestirParams& params)
 {
-    return {params.shift, params.mis == ReuseMis::Constant ? MisForm::Constant : MisForm::Pairwise};
+    return {params.shift, params.mis == ReuseMis::Constant ? MisForm::Constant : MisForm::Pairwise,
+            params.visibility};
 }
 
 void reuse_in_time(const PassView& pass, const FinishedPass& before, bool still, const Tile& tile,
                    const PixelRng& rng, Combination& scratch, const ReuseOutput& out,
-                   WalkCounts& counts)
+                   WalkCounts& walks, ReuseCounts& counts)
 {
     const RestirParams& params = pass.frame.params;
     scratch.clear();
@@ -81,17 +82,19 @@ void reuse_in_time(const PassView& pass, const FinishedPass& before, bool still,
             const float confidence =
                 agreement * std::min(history.M, cap_of(params.temporal, still));
             if (!(confidence > 0.0f)) continue;
+            ++counts.histories;
             Reservoir aged = history;
             aged.age += 1.0f;
             scratch.add_other({pass.frame, own}, {before.frame, earlier}, aged, confidence, map);
         }
     }
-    scratch.trace(pass.frame.scene->media, before.frame.scene->media, counts);
+    scratch.trace(pass.frame.scene->media, before.frame.scene->media, walks);
     finish_tile(tile, rng, scratch, out);
 }
 
 void reuse_in_space(const PassView& pass, const Tile& tile, const PixelRng& rng,
-                    Combination& scratch, const ReuseOutput& out, WalkCounts& counts)
+                    Combination& scratch, const ReuseOutput& out, WalkCounts& walks,
+                    ReuseCounts& counts)
 {
     MOTE_ASSERT(&out.reservoirs != &pass.reservoirs);
     const SpatialParams& params = pass.frame.params.spatial;
@@ -117,6 +120,7 @@ void reuse_in_space(const PassView& pass, const Tile& tile, const PixelRng& rng,
                     continue;
                 }
                 if ((nx == x && ny == y) || !(pass.domains.depth(nx, ny) > 0.0f)) continue;
+                ++counts.neighbours;
                 pass.domains.load(nx, ny, other);
                 const Reservoir& reservoir = pass.reservoirs.at(nx, ny).r;
                 scratch.add_other({pass.frame, own}, {pass.frame, other}, reservoir, reservoir.M,
@@ -124,7 +128,7 @@ void reuse_in_space(const PassView& pass, const Tile& tile, const PixelRng& rng,
             }
         }
     }
-    scratch.trace(pass.frame.scene->media, pass.frame.scene->media, counts);
+    scratch.trace(pass.frame.scene->media, pass.frame.scene->media, walks);
     finish_tile(
         tile,
         [&](int x, int y) {
@@ -133,6 +137,36 @@ void reuse_in_space(const PassView& pass, const Tile& tile, const PixelRng& rng,
             return numbers;
         },
         scratch, out);
+}
+
+void shade_chosen(const PassView& pass, const Tile& tile, Buffer2D<Spectrum>& colors,
+                  WalkCounts& walks)
+{
+    LightRays rays;
+    PixelDomain own;
+    int pixel = 0;
+    std::vector<Spectrum> tile_colors;
+    for (int y = tile.y0; y < tile.y1; ++y) {
+        for (int x = tile.x0; x < tile.x1; ++x, ++pixel) {
+            tile_colors.emplace_back(0.0f);
+            const Reservoir& r = pass.reservoirs.at(x, y).r;
+            if (!(r.W > 0.0f)) continue;
+            pass.domains.load(x, y, own);
+            const Candidate c = evaluate(pass.frame, own, r.y);
+            rays.add(pixel, c.x, c.arrival.wi, c.arrival.distance, own.ray.time, r.W * c.f,
+                     infinity);
+        }
+    }
+    rays.trace(pass.frame.scene->media, walks);
+    for (size_t i = 0; i < rays.size(); ++i) {
+        tile_colors[static_cast<size_t>(rays.owners[i])] = rays.value(i);
+    }
+    pixel = 0;
+    for (int y = tile.y0; y < tile.y1; ++y) {
+        for (int x = tile.x0; x < tile.x1; ++x) {
+            colors.at(x, y) = tile_colors[static_cast<size_t>(pixel++)];
+        }
+    }
 }
 
 }  // namespace mote

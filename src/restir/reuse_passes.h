@@ -13,6 +13,12 @@ struct PassView {
     const Buffer2D<PixelReservoir>& reservoirs;
 };
 
+/// Reservoirs that took part.
+struct ReuseCounts {
+    int64_t histories = 0;
+    int64_t neighbours = 0;
+};
+
 /// Random numbers of a pixel for one purpose.
 using PixelRng = std::function<Rng(int x, int y)>;
 
@@ -28,12 +34,18 @@ struct ReuseOutput {
 /// the earlier domain is evaluated as it was. `still`: nothing changed.
 void reuse_in_time(const PassView& pass, const FinishedPass& before, bool still, const Tile& tile,
                    const PixelRng& rng, Combination& scratch, const ReuseOutput& out,
-                   WalkCounts& counts);
+                   WalkCounts& walks, ReuseCounts& counts);
 
 /// Combines each pixel of a tile with neighbours in a disk, a spiral turned at random for each
 /// pixel and pass; rays without smoke are passed over. out must not be pass.reservoirs (asserted).
 void reuse_in_space(const PassView& pass, const Tile& tile, const PixelRng& rng,
-                    Combination& scratch, const ReuseOutput& out, WalkCounts& counts);
+                    Combination& scratch, const ReuseOutput& out, WalkCounts& walks,
+                    ReuseCounts& counts);
+
+/// Shades the chosen samples of a tile by one exact ray each: for targets that do not know shadows
+/// exactly. Where they do, the combination's colors are better.
+void shade_chosen(const PassView& pass, const Tile& tile, Buffer2D<Spectrum>& colors,
+                  WalkCounts& walks);
 
 /// The rules that the frame's parameters stand for.
 [[nodiscard]] CombineRules temporal_rules(const RestirParams& params, bool still);

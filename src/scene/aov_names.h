@@ -9,6 +9,7 @@ inline constexpr std::array aov_names = {
     "Z",          "albedo",        "motion",          "variance",
     "samples",    "volume_direct", "volume_indirect", "volume_emission",
     "background", "transmittance", "optical_depth",   "volume_Z",
+    "restir",     "cost",
 };
 
 }  // namespace mote

@@ -6,12 +6,22 @@ namespace {
 constexpr std::array reuse_names = {"auto", "off", "temporal", "spatial", "both"};
 constexpr std::array shift_names = {"random_numbers", "world", "fraction"};
 constexpr std::array mis_names = {"auto", "pairwise", "balance", "constant"};
-constexpr std::array visibility_names = {"exact", "cached"};
+constexpr std::array visibility_names = {"exact", "cached", "none"};
+constexpr std::array preset_names = {"default", "textbook", "preview", "biased-no-visibility",
+                                     "biased-constant-mis"};
 
 }  // namespace
 
 void describe(FieldVisitor& v, RestirParams& restir)
 {
+    visit_choice(v,
+                 {.key = "preset",
+                  .doc = "Sets the keys below, those given besides win: textbook is the papers' "
+                         "configuration, for comparison; preview leaves out exact corrections; "
+                         "biased-no-visibility reuses without shadow rays, biased-constant-mis with "
+                         "1/M weights"},
+                 restir.preset, preset_names);
+    if (v.assigns()) restir = make_restir_params(restir.preset);
     visit_choice(v,
                  {.key = "reuse",
                   .doc = "Reservoirs that a pixel combines with its own; auto decides per frame "
@@ -56,8 +66,9 @@ void describe(FieldVisitor& v, RestirParams& restir)
                  restir.mis, mis_names);
     visit_choice(v,
                  {.key = "visibility",
-                  .doc = "Shadows in the target function: exact rays, or the light caches with an "
-                         "exact ray for the chosen sample"},
+                  .doc = "Shadows in the target function: exact rays; cached: what the light caches "
+                         "know, with an exact ray for the chosen sample; none: no shadow rays in "
+                         "reuse, biased"},
                  restir.visibility, visibility_names);
     visit_table(v, {.key = "temporal", .doc = "Reuse of the pass before"}, restir.temporal);
     visit_table(v, {.key = "spatial", .doc = "Reuse of neighbours"}, restir.spatial);

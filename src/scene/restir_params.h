@@ -29,7 +29,18 @@ enum class ReuseMis {
 /// What the target function knows about shadows.
 enum class TargetVisibility {
     Exact,   ///< closed-form transmittance, a ray per evaluation; nothing left to shade
-    Cached,  ///< from the light caches; the chosen sample is shaded exactly
+    Cached,  ///< from the light caches where they know (lights at infinity), else none; the chosen
+             ///< sample is shaded exactly
+    None,    ///< exact for candidates, ignored in reuse, exact for the chosen sample: biased
+};
+
+/// Sets of parameters by name; keys that a scene gives besides win.
+enum class RestirPreset {
+    Default,
+    Textbook,            ///< the papers' configuration: cached targets, long history; for comparison
+    Preview,             ///< closed forms without corrections: biased by the caches' coarseness
+    BiasedNoVisibility,  ///< reuse without shadow rays
+    BiasedConstantMis,   ///< 1/M weights on the world-space shift
 };
 
 /// Reuse of the reservoir that a pixel had one pass ago.
@@ -48,12 +59,13 @@ struct SpatialParams {
 
 /// How the volumetric ReSTIR estimator samples. Unbiased unless a field says otherwise.
 struct RestirParams {
+    RestirPreset preset = RestirPreset::Default;
     ReuseMode reuse = ReuseMode::Auto;
     int candidates = 8;           ///< distances and lights tried per pixel and pass, [1, 256]
     bool control_variate = true;  ///< lights at infinity by closed form plus exact corrections;
                                   ///< else they take part in the candidates
     int distant_rays = 2;         ///< exact corrections per pass towards distant lights
-    int environment_rays = 4;     ///< and into the environment
+    int environment_rays = 8;     ///< and into the environment
     bool corrections = true;      ///< false: the closed form alone, a fast biased preview
     ShiftKind shift = ShiftKind::RandomNumbers;
     ReuseMis mis = ReuseMis::Auto;
@@ -61,5 +73,40 @@ struct RestirParams {
     TemporalParams temporal;
     SpatialParams spatial;
 };
+
+/// The parameters that a preset stands for.
+[[nodiscard]] inline RestirParams make_restir_params(RestirPreset preset)
+{
+    RestirParams p;
+    p.preset = preset;
+    switch (preset) {
+        case RestirPreset::Default:
+            break;
+        case RestirPreset::Textbook:
+            p.reuse = ReuseMode::Both;
+            p.candidates = 4;
+            p.control_variate = false;
+            p.shift = ShiftKind::World;
+            p.visibility = TargetVisibility::Cached;
+            p.temporal = {20.0f, 0.0f};
+            p.spatial = {5, 10.0f, true};
+            break;
+        case RestirPreset::Preview:
+            p.corrections = false;
+            break;
+        case RestirPreset::BiasedNoVisibility:
+            p.reuse = ReuseMode::Both;
+            p.candidates = 4;
+            p.visibility = TargetVisibility::None;
+            break;
+        case RestirPreset::BiasedConstantMis:
+            p.reuse = ReuseMode::Both;
+            p.candidates = 4;
+            p.shift = ShiftKind::World;
+            p.mis = ReuseMis::Constant;
+            break;
+    }
+    return p;
+}
 
 }  // namespace mote
