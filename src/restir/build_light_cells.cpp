@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "core/parallel.h"
+#include "restir/cluster_lanes.h"
 #include "restir/light_cells.h"
 #include "restir/light_cut.h"
 
@@ -158,27 +159,52 @@ void LightCells::make_cuts(const CoarseExtinction& extinction, const std::vector
     }
 }
 
+/// The clusters of a cut, side by side.
+class LightCells::CutLanes {
+  public:
+    void load(const LightCells& cells, const Cut& cut)
+    {
+        if (&cut == loaded_) return;
+        loaded_ = &cut;
+        batches_.assign((cut.count + lane_count - 1) / lane_count, {});
+        for (uint32_t n = 0; n < cut.count; ++n) {
+            const int node = cells.nodes_[cut.first + n];
+            batches_[n / lane_count].set(static_cast<int>(n % lane_count),
+                                         cells.clusters_.nodes[static_cast<size_t>(node)]);
+        }
+    }
+    [[nodiscard]] const std::vector<ClusterLanes>& batches() const { return batches_; }
+
+  private:
+    const Cut* loaded_ = nullptr;  // neighbours share their cuts
+    std::vector<ClusterLanes> batches_;
+};
+
 void LightCells::fill_fluence(const CoarseExtinction& extinction)
 {
+    constexpr int steps = 16;
     const float blur2 = blur2_of(lattice_.cell);
     parallel_for(cells_.size(), 64, [&](size_t begin, size_t end) {
+        CutLanes lanes;
         for (size_t i = begin; i < end; ++i) {
             Cell& cell = cells_[i];
             const Cut& cut = cuts_[cell.cut];
+            lanes.load(*this, cut);
             const Vec3 x = lattice_.centre(lattice_.coordinates(cell.position));
-            float chosen = 0.0f;
             float expected = 0.0f;
-            for (uint32_t n = 0; n < cut.count; ++n) {
-                const LightCluster& cluster =
-                    clusters_.nodes[static_cast<size_t>(nodes_[cut.first + n])];
-                const float tau = coarse_optical_depth(extinction, x, cluster.centre);
-                const float clear = cluster_fluence(cluster, x, blur2);
-                fluence_[cell.entry + n] =
-                    clear * cluster_transmittance(cluster, x, tau, coarse_doubt);
-                chosen += fluence_[cell.entry + n];
-                expected += clear * cluster_transmittance(cluster, x, tau, 0.0f);
+            float chosen = 0.0f;
+            uint32_t n = 0;
+            for (const ClusterLanes& batch : lanes.batches()) {
+                FluenceLanes fluence;
+                eval_fluence(batch, extinction, x, blur2, steps, fluence);
+                for (int l = 0; l < lane_count && n < cut.count; ++l, ++n) {
+                    fluence_[cell.entry + n] = fluence.weight[l];
+                    expected += fluence.expected[l];
+                    chosen += fluence.weight[l];
+                }
             }
-            cell.certainty = chosen > 0.0f ? expected / chosen : 1.0f;
+            const float certainty = expected / chosen;
+            cell.certainty = certainty > 0.0f && certainty < 1.0f ? certainty : 1.0f;
         }
     });
 }
@@ -186,36 +212,33 @@ void LightCells::fill_fluence(const CoarseExtinction& extinction)
 void LightCells::set_eye(Vec3 eye)
 {
     parallel_for(cells_.size(), 64, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i) fill_cell(cells_[i], eye);
+        CutLanes lanes;
+        for (size_t i = begin; i < end; ++i) {
+            lanes.load(*this, cuts_[cells_[i].cut]);
+            fill_cell(cells_[i], lanes, eye);
+        }
     });
     fill_inscatter();
 }
 
-void LightCells::fill_cell(const Cell& cell, Vec3 eye)
+void LightCells::fill_cell(const Cell& cell, const CutLanes& lanes, Vec3 eye)
 {
     const Vec3 x = lattice_.centre(lattice_.coordinates(cell.position));
     const Cut& cut = cuts_[cell.cut];
-    const Phase& phase = phases_[cell.volume];
     const float blur2 = blur2_of(lattice_.cell);
     const Vec3 to_eye = eye - x;
     const Vec3 wo = to_eye / std::max(glm::length(to_eye), 1e-30f);
     float weight[256];
     float total = 0.0f;
-    for (uint32_t n = 0; n < cut.count; ++n) {
-        const LightCluster& cluster = clusters_.nodes[static_cast<size_t>(nodes_[cut.first + n])];
-        const Vec3 to_light = cluster.centre - x;
-        const float distance2 = glm::dot(to_light, to_light);
-        const float wide2 = distance2 + cluster.spread2 + blur2;
-        const float inv_wide = 1.0f / std::sqrt(std::max(wide2, 1e-30f));
-        const float distance = std::sqrt(distance2);
-        // A lobe averaged over a range of directions of mean cosine a is about one of a times g.
-        const float a = distance * inv_wide;
-        const float cos_theta = -glm::dot(wo, to_light) / std::max(distance, 1e-30f);
-        float p = eval_hg(cos_theta, a * phase.g);
-        if (phase.weight_b > 0.0f) p += phase.weight_b * (eval_hg(cos_theta, a * phase.g_b) - p);
-        const float w = fluence_[cell.entry + n] * p;
-        weight[n] = w > 0.0f ? std::min(w, 1e30f) : 0.0f;
-        total += weight[n];
+    uint32_t n = 0;
+    for (const ClusterLanes& batch : lanes.batches()) {
+        Float8 phase;
+        eval_phase(batch, x, wo, phases_[cell.volume], blur2, phase);
+        for (int l = 0; l < lane_count && n < cut.count; ++l, ++n) {
+            const float w = fluence_[cell.entry + n] * phase[l];
+            weight[n] = w > 0.0f ? std::min(w, 1e30f) : 0.0f;
+            total += weight[n];
+        }
     }
     scattered_[static_cast<size_t>(cell_at_[cell.position])] = total * cell.certainty;
 
@@ -228,7 +251,7 @@ void LightCells::fill_cell(const Cell& cell, Vec3 eye)
     const int* begins = begins_.data() + cut.first;
     double sum = 0.0;
     float* cdf = cdf_.data() + cell.entry;
-    for (uint32_t n = 0; n < cut.count; ++n) {
+    for (n = 0; n < cut.count; ++n) {
         const auto share = static_cast<float>(sums[begins[n + 1]] - sums[begins[n]]);
         sum += static_cast<double>(known * weight[n] + by_power * share + by_count);
         cdf[n] = static_cast<float>(std::min(sum, 1.0));

@@ -2,21 +2,43 @@
 
 #include <algorithm>
 
-#include "restir/light_cut.h"
-
 namespace mote {
 namespace {
 
-/// Index of the first value above u; the last one is 1, so there always is one.
-uint32_t first_above(const float* cdf, uint32_t count, double u)
+/// How many of the first count - 1 values of an ascending row are not above x. Counting all of at
+/// most 255 takes a third of the time of halving, whose branches nobody can predict.
+template <class T>
+uint32_t count_up_to(const T* row, uint32_t count, T x)
 {
-    const float* found = std::upper_bound(
-        cdf, cdf + count - 1, u, [](double a, float b) { return a < static_cast<double>(b); });
-    return static_cast<uint32_t>(found - cdf);
+    uint32_t n = 0;
+    for (uint32_t i = 0; i + 1 < count; ++i) n += row[i] <= x ? 1u : 0u;
+    return n;
+}
+
+/// Largest float that is not above u.
+float round_down(double u)
+{
+    const auto f = static_cast<float>(u);
+    return static_cast<double>(f) > u ? std::nextafter(f, 0.0f) : f;
 }
 
 constexpr float whole = 1.0f;
 constexpr int everywhere_nodes[1] = {0};
+
+/// Squared distance at which a cluster counts as seen from x.
+float effective_distance2(const LightCluster& cluster, Vec3 x, float least2)
+{
+    const Vec3 to_x = x - cluster.centre;
+    return std::max(glm::dot(to_x, to_x), std::max(0.5f * cluster.spread2, least2));
+}
+
+/// How much more a cluster shines towards x than to all sides on average, as in eval_fluence.
+float towards(const LightCluster& cluster, Vec3 x, float distance2)
+{
+    if (cluster.facing == Vec3(0.0f)) return 1.0f;
+    const float cos_theta = glm::dot(cluster.facing, x - cluster.centre) / std::sqrt(distance2);
+    return std::max(0.05f, 1.0f + 2.0f * cos_theta);
+}
 
 }  // namespace
 
@@ -39,10 +61,13 @@ double LightCells::left_share(const LightCluster& node, int index, Vec3 x) const
 {
     const LightCluster& left = clusters_.nodes[static_cast<size_t>(index) + 1];
     const LightCluster& right = clusters_.nodes[static_cast<size_t>(node.right)];
-    const float blur2 = sqr(0.125f * lattice_.cell);
-    const float a = std::min(cluster_fluence(left, x, blur2), 1e37f);
-    const float b = std::min(cluster_fluence(right, x, blur2), 1e37f);
-    const float known = a + b > 0.0f ? a / (a + b) : 0.5f;
+    const float least2 = sqr(0.125f * lattice_.cell) + 1e-30f;
+    const float left2 = effective_distance2(left, x, least2);
+    const float right2 = effective_distance2(right, x, least2);
+    // Powers over squared distances, on their common denominator.
+    const float a = left.power * right2 * towards(left, x, left2);
+    const float b = right.power * left2 * towards(right, x, right2);
+    const float known = a + b > 0.0f && a + b < infinity ? a / (a + b) : 0.5f;
     const float by_count =
         static_cast<float>(left.end - left.begin) / static_cast<float>(node.end - node.begin);
     return static_cast<double>(0.98f * known + 0.02f * by_count);
@@ -53,7 +78,7 @@ LightPick LightCells::sample(Vec3 x, double u) const
     if (clusters_.ids.empty()) return {};
     if (clusters_.ids.size() == 1) return {clusters_.ids[0], 1.0f};
     const Row row = row_at(x);
-    const uint32_t i = first_above(row.cdf, row.count, u);
+    const uint32_t i = count_up_to(row.cdf, row.count, round_down(u));
     const float lo = i > 0 ? row.cdf[i - 1] : 0.0f;
     double pmf = static_cast<double>(row.cdf[i] - lo);
     double rest = (u - static_cast<double>(lo)) / pmf;
@@ -86,8 +111,7 @@ float LightCells::pmf(int light, Vec3 x) const
     if (place < 0) return 0.0f;
     if (clusters_.ids.size() == 1) return 1.0f;
     const Row row = row_at(x);
-    const int* found = std::upper_bound(row.begins + 1, row.begins + row.count, place);
-    const auto i = static_cast<size_t>(found - row.begins - 1);
+    const uint32_t i = count_up_to(row.begins + 1, row.count, place);
     double pmf = static_cast<double>(row.cdf[i] - (i > 0 ? row.cdf[i - 1] : 0.0f));
     int index = row.nodes[i];
     const LightCluster* node = &clusters_.nodes[static_cast<size_t>(index)];

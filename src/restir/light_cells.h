@@ -97,7 +97,8 @@ class LightCells {
     void make_cuts(const CoarseExtinction& extinction, const std::vector<Vec3i>& blocks,
                    int most_clusters);
     void fill_fluence(const CoarseExtinction& extinction);
-    void fill_cell(const Cell& cell, Vec3 eye);
+    class CutLanes;
+    void fill_cell(const Cell& cell, const CutLanes& lanes, Vec3 eye);
     void fill_inscatter();
 
     LightClusters clusters_;

@@ -1,6 +1,8 @@
 // Light cells over a plume of 128 x 256 x 128 voxels with many lamps in and around it: what they
 // cost to build and to use, and how well they choose lights against the reference's light tree.
 //   bench_light_cells [optical depth through the middle, 8] [g, 0.3] [voxels across, 128]
+//                     [clusters per cell, 64] [effort, 1: points at which variance is taken]
+//                     [most lights, 1000000]
 //   bench_light_cells scene.toml
 // CPU time of one process. "rel. variance" is that of one light sample at the collisions of camera
 // rays, exact (a sum over all lights with exact transmittance): sum of variances over sum of
@@ -73,12 +75,16 @@ struct Event {
     Phase phase;
 };
 
-std::vector<Event> collisions(const Scene& scene, int count)
+/// At random places of the film, or in scanline order.
+std::vector<Event> collisions(const Scene& scene, int count, bool in_order)
 {
     std::vector<Event> out;
     for (uint32_t i = 0; static_cast<int>(out.size()) < count && i < 1000000; ++i) {
         Rng rng(3, 0, Stream::Test, i, 0);
-        const Vec2 film = rng.uniform2() * Vec2(scene.camera.width, scene.camera.height);
+        const auto width = static_cast<uint32_t>(scene.camera.width);
+        const auto height = static_cast<uint32_t>(scene.camera.height);
+        const Vec2 film =
+            in_order ? Vec2(i % width, i / width % height) : rng.uniform2() * Vec2(width, height);
         const Ray ray = generate_ray(scene.camera, film, Vec2(0.5f), 0.5f);
         const auto hit = sample_free_flight(scene.media, ray, {0.0f, infinity}, rng);
         if (!hit) continue;
@@ -129,7 +135,7 @@ void compare(const Scene& scene, const LightCells& cells, int points)
     Quality by_tree;
     Quality by_cells;
     std::vector<double> log_ratio;
-    for (const Event& event : collisions(scene, points)) {
+    for (const Event& event : collisions(scene, points, false)) {
         double mean = 0.0;
         double second_tree = 0.0;
         double second_cells = 0.0;
@@ -162,7 +168,7 @@ void compare(const Scene& scene, const LightCells& cells, int points)
 
 void time_lookups(const Scene& scene, const LightCells& cells)
 {
-    const std::vector<Event> events = collisions(scene, 20000);
+    const std::vector<Event> events = collisions(scene, 20000, true);
     const auto count = static_cast<double>(events.size()) * 10;
     double sum = 0.0;
     const auto over = [&](auto&& f) {
@@ -187,7 +193,7 @@ void time_lookups(const Scene& scene, const LightCells& cells)
                 sum < 0.0 ? "!" : "");
 }
 
-void run(const Scene& scene, int points)
+void run(const Scene& scene, const LightCellsParams& params, int points)
 {
     const Vec3 eye = generate_ray(scene.camera, Vec2(0.5f), Vec2(0.5f), 0.5f).o;
     std::vector<double> build;
@@ -197,7 +203,7 @@ void run(const Scene& scene, int points)
     for (int round = 0; round < 3; ++round) {
         const double start = cpu_seconds();
         const std::vector<LocalLight> lights = local_lights(scene.lights);
-        cells = LightCells(scene.media, lights, eye);
+        cells = LightCells(scene.media, lights, eye, params);
         const double built = cpu_seconds();
         cells.set_eye(eye);
         build.push_back(built - start);
@@ -227,15 +233,21 @@ int main(int argc, char** argv)
     if (argc > 1 && std::strstr(argv[1], ".toml")) {
         SceneCache cache;
         PrepareStats stats;
-        run(prepare_frame(load_scene(argv[1]), 1, {}, cache, stats), 200);
+        run(prepare_frame(load_scene(argv[1]), 1, {}, cache, stats), {}, 200);
         return 0;
     }
     Scene scene = plume_scene(argc > 1 ? static_cast<float>(std::atof(argv[1])) : 8.0f,
                               argc > 2 ? static_cast<float>(std::atof(argv[2])) : 0.3f,
                               argc > 3 ? std::max(16, std::atoi(argv[3])) : 128);
+    LightCellsParams params;
+    if (argc > 4) params.most_clusters = std::atoi(argv[4]);
+    const int effort = argc > 5 ? std::atoi(argv[5]) : 1;
+    const int most_lights = argc > 6 ? std::atoi(argv[6]) : 1'000'000;
     for (const int count : {1, 100, 1000, 100'000, 1'000'000}) {
+        if (count > most_lights) break;
         scatter_lamps(scene, count);
-        run(scene, count <= 1 ? 0 : count <= 1000 ? 100'000 / count : count <= 100'000 ? 16 : 0);
+        const int points = count <= 1 || count > 100'000 ? 0 : std::max(16, 100'000 / count);
+        run(scene, params, effort * points);
     }
     return 0;
 }
