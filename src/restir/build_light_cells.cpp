@@ -249,14 +249,18 @@ void LightCells::fill_cell(const Cell& cell, const CutLanes& lanes, Vec3 eye)
         static_cast<float>(0.5 * static_cast<double>(left_over) / clusters_.share_sum.back());
     const float by_count = 0.5f * left_over / static_cast<float>(cut.count);
     const int* begins = begins_.data() + cut.first;
-    double sum = 0.0;
-    float* cdf = cdf_.data() + cell.entry;
+    float sum = 0.0f;
+    uint16_t* cdf = cdf_.data() + cell.entry;
+    uint32_t before = 0;
     for (n = 0; n < cut.count; ++n) {
         const auto share = static_cast<float>(sums[begins[n + 1]] - sums[begins[n]]);
-        sum += static_cast<double>(known * weight[n] + by_power * share + by_count);
-        cdf[n] = static_cast<float>(std::min(sum, 1.0));
+        sum += known * weight[n] + by_power * share + by_count;
+        // Every entry keeps at least one quantum, those that follow included.
+        const uint32_t most = 65536 - (cut.count - 1 - n);
+        before = std::clamp(static_cast<uint32_t>(65536.0f * std::min(sum, 1.0f) + 0.5f),
+                            before + 1, most);
+        cdf[n] = static_cast<uint16_t>(std::min(before, 65535u));
     }
-    cdf[cut.count - 1] = 1.0f;
 }
 
 void LightCells::fill_inscatter()

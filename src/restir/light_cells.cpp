@@ -5,24 +5,32 @@
 namespace mote {
 namespace {
 
-/// How many of the first count - 1 values of an ascending row are not above x. Counting all of at
-/// most 255 takes a third of the time of halving, whose branches nobody can predict.
+/// Probabilities of a cell's entries are whole multiples of this.
+constexpr double quantum = 1.0 / 65536.0;
+
+/// How many of the first count - 1 values of an ascending row are not above x. Vectors count all of
+/// them before a search by halving has recovered from its first mispredicted branch.
 template <class T>
 uint32_t count_up_to(const T* row, uint32_t count, T x)
 {
-    uint32_t n = 0;
-    for (uint32_t i = 0; i + 1 < count; ++i) n += row[i] <= x ? 1u : 0u;
-    return n;
+    T n = 0;
+    for (uint32_t i = 0; i + 1 < count; ++i) n = static_cast<T>(n + (row[i] <= x ? 1 : 0));
+    return static_cast<uint32_t>(n);
 }
 
-/// Largest float that is not above u.
-float round_down(double u)
+/// Start and length of an entry's interval of [0, 65536).
+struct Share {
+    double lo, size;
+};
+
+Share share_of(const uint16_t* cdf, uint32_t count, uint32_t i)
 {
-    const auto f = static_cast<float>(u);
-    return static_cast<double>(f) > u ? std::nextafter(f, 0.0f) : f;
+    const int lo = i > 0 ? cdf[i - 1] : 0;
+    const int hi = i + 1 < count ? cdf[i] : 65536;
+    return {static_cast<double>(lo), static_cast<double>(hi - lo)};
 }
 
-constexpr float whole = 1.0f;
+constexpr uint16_t whole = 65535;
 constexpr int everywhere_nodes[1] = {0};
 
 /// Squared distance at which a cluster counts as seen from x.
@@ -78,10 +86,11 @@ LightPick LightCells::sample(Vec3 x, double u) const
     if (clusters_.ids.empty()) return {};
     if (clusters_.ids.size() == 1) return {clusters_.ids[0], 1.0f};
     const Row row = row_at(x);
-    const uint32_t i = count_up_to(row.cdf, row.count, round_down(u));
-    const float lo = i > 0 ? row.cdf[i - 1] : 0.0f;
-    double pmf = static_cast<double>(row.cdf[i] - lo);
-    double rest = (u - static_cast<double>(lo)) / pmf;
+    const double scaled = 65536.0 * (u > 0.0 ? std::min(u, 1.0 - 0x1p-53) : 0.0);
+    const uint32_t i = count_up_to(row.cdf, row.count, static_cast<uint16_t>(scaled));
+    const Share share = share_of(row.cdf, row.count, i);
+    double pmf = share.size * quantum;
+    double rest = (scaled - share.lo) / share.size;
     // What is left of u goes down the tree from here.
     int index = row.nodes[i];
     const LightCluster* node = &clusters_.nodes[static_cast<size_t>(index)];
@@ -112,7 +121,7 @@ float LightCells::pmf(int light, Vec3 x) const
     if (clusters_.ids.size() == 1) return 1.0f;
     const Row row = row_at(x);
     const uint32_t i = count_up_to(row.begins + 1, row.count, place);
-    double pmf = static_cast<double>(row.cdf[i] - (i > 0 ? row.cdf[i - 1] : 0.0f));
+    double pmf = share_of(row.cdf, row.count, i).size * quantum;
     int index = row.nodes[i];
     const LightCluster* node = &clusters_.nodes[static_cast<size_t>(index)];
     while (!node->is_leaf()) {
@@ -154,10 +163,10 @@ float LightCells::inscatter(Vec3 x) const
 size_t LightCells::memory_bytes() const
 {
     const auto bytes = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
-    return bytes(clusters_.nodes) + bytes(clusters_.ids) + bytes(clusters_.place_of_id) +
-           bytes(clusters_.share_sum) + bytes(cell_at_) + bytes(inscatter_) + bytes(cells_) +
-           bytes(cuts_) + bytes(nodes_) + bytes(begins_) + bytes(fluence_) + bytes(cdf_) +
-           bytes(scattered_);
+    return bytes(clusters_.nodes) + bytes(clusters_.bounds) + bytes(clusters_.ids) +
+           bytes(clusters_.place_of_id) + bytes(clusters_.share_sum) + bytes(cell_at_) +
+           bytes(inscatter_) + bytes(cells_) + bytes(cuts_) + bytes(nodes_) + bytes(begins_) +
+           bytes(fluence_) + bytes(cdf_) + bytes(scattered_);
 }
 
 }  // namespace mote

@@ -20,7 +20,7 @@ struct LightCellsParams {
     int most_clusters = 64;          ///< per cell, [1,256]. Cost and memory are linear.
     float floor = 0.02f;             ///< share of choices that ignores what the cache knows, (0,1]
     size_t most_cells = 1u << 17;    ///< cells grow to keep to it. 50 ms of one core at 1 light.
-    size_t most_entries = 1u << 22;  ///< cells times clusters; 8 bytes each, about 50 ns
+    size_t most_entries = 1u << 22;  ///< cells times clusters; 6 bytes each, about 50 ns
 };
 
 /// What many local lights bring to each place in the smoke, per frame: chooses lights for points,
@@ -84,7 +84,7 @@ class LightCells {
     };
     /// What the cache says of one cell, or of everywhere outside.
     struct Row {
-        const float* cdf = nullptr;  ///< count values, the last is 1
+        const uint16_t* cdf = nullptr;
         const int* nodes = nullptr;
         const int* begins = nullptr;  ///< first light of each range and the end of the last
         uint32_t count = 0;
@@ -110,10 +110,12 @@ class LightCells {
     float least_inscatter_ = 1.0f;
     std::vector<Cell> cells_;
     std::vector<Cut> cuts_;
-    std::vector<int> nodes_;        ///< of all cuts, into clusters_.nodes
-    std::vector<int> begins_;       ///< of all cuts, one more each than nodes
-    std::vector<float> fluence_;    ///< per entry: shadowed, before scattering [W/m^2]
-    std::vector<float> cdf_;        ///< per entry
+    std::vector<int> nodes_;      ///< of all cuts, into clusters_.nodes
+    std::vector<int> begins_;     ///< of all cuts, one more each than nodes
+    std::vector<float> fluence_;  ///< per entry: shadowed, before scattering [W/m^2]
+    /// Per entry: 65536 times the probability of the cell's entries up to this one, rounded so that
+    /// each has at least 1. The last of a cell stands for 65536.
+    std::vector<uint16_t> cdf_;
     std::vector<float> scattered_;  ///< per cell: sum of what is scattered to the eye
     int everything_[2] = {0, 0};    ///< the one range used outside
 };

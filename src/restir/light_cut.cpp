@@ -25,15 +25,16 @@ float distance2(const Bounds3& box, Vec3 x)
 
 /// As much as the nearest light might bring if it held all the power, times how far its place may
 /// change that.
-float uncertainty(const LightCluster& cluster, Vec3 x, float radius, float blur2, float tau)
+float uncertainty(const LightCluster& cluster, const Bounds3& bounds, Vec3 x, float radius,
+                  float blur2, float tau)
 {
     if (cluster.is_leaf()) return 0.0f;
     const float far = std::max(glm::length(cluster.centre - x), 1e-15f);
-    const float near = std::max(0.0f, std::sqrt(distance2(cluster.bounds, x)) - radius);
+    const float near = std::max(0.0f, std::sqrt(distance2(bounds, x)) - radius);
     // The transmittance of cluster_lanes.h with v = 1/4.
     const float fade = 1.0f + 0.25f * tau * std::min(1.0f, near / far);
     const float most = cluster.power * inv_4pi / (std::max(sqr(near), blur2) * sqr(sqr(fade)));
-    const float size = 0.5f * glm::length(cluster.bounds.extent());
+    const float size = 0.5f * glm::length(bounds.extent());
     const float spread = size / std::max(near, 1e-15f) + tau * size / far;
     return most * std::min(1.0f, sqr(spread));
 }
@@ -78,9 +79,11 @@ void choose_light_cut(const LightClusters& clusters, const CoarseExtinction& ext
         eval_fluence(lanes, extinction, x, blur2, steps, fluence);
         for (int l = 0; l < count; ++l) {
             Candidate& candidate = candidates[slots[l]];
-            const LightCluster& node = clusters.nodes[static_cast<size_t>(candidate.node)];
+            const auto n = static_cast<size_t>(candidate.node);
+            const LightCluster& node = clusters.nodes[n];
             candidate.fluence = fluence.weight[l];
-            candidate.error = uncertainty(node, x, radius, blur2, fluence.tau[l]);
+            candidate.error =
+                uncertainty(node, clusters.bounds[n], x, radius, blur2, fluence.tau[l]);
             total += candidate.fluence;
         }
     }

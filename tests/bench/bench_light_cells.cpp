@@ -75,16 +75,16 @@ struct Event {
     Phase phase;
 };
 
-/// At random places of the film, or in scanline order.
+/// At random places of the film, or in scanline order with 8 rays per pixel.
 std::vector<Event> collisions(const Scene& scene, int count, bool in_order)
 {
     std::vector<Event> out;
-    for (uint32_t i = 0; static_cast<int>(out.size()) < count && i < 1000000; ++i) {
+    for (uint32_t i = 0; static_cast<int>(out.size()) < count && i < 2000000; ++i) {
         Rng rng(3, 0, Stream::Test, i, 0);
         const auto width = static_cast<uint32_t>(scene.camera.width);
         const auto height = static_cast<uint32_t>(scene.camera.height);
-        const Vec2 film =
-            in_order ? Vec2(i % width, i / width % height) : rng.uniform2() * Vec2(width, height);
+        const Vec2 film = in_order ? Vec2(i / 8 % width, i / 8 / width % height)
+                                   : rng.uniform2() * Vec2(width, height);
         const Ray ray = generate_ray(scene.camera, film, Vec2(0.5f), 0.5f);
         const auto hit = sample_free_flight(scene.media, ray, {0.0f, infinity}, rng);
         if (!hit) continue;
@@ -168,12 +168,12 @@ void compare(const Scene& scene, const LightCells& cells, int points)
 
 void time_lookups(const Scene& scene, const LightCells& cells)
 {
-    const std::vector<Event> events = collisions(scene, 20000, true);
-    const auto count = static_cast<double>(events.size()) * 10;
+    const std::vector<Event> events = collisions(scene, 100000, true);
+    const double count = 5.0 * static_cast<double>(events.size());
     double sum = 0.0;
     const auto over = [&](auto&& f) {
         const double start = cpu_seconds();
-        for (int round = 0; round < 10; ++round) {
+        for (int round = 0; round < 5; ++round) {
             for (size_t i = 0; i < events.size(); ++i)
                 sum += f(events[i].x,
                          (static_cast<double>(i) + 0.5) / static_cast<double>(events.size()));
