@@ -8,19 +8,18 @@
 namespace mote {
 namespace {
 
-/// Mean extinction of one volume over a cell.
-float mean_sigma_t(const Volume& volume, const GridFrame& frame, Vec3 lo, float cell, int n)
+/// Where a cell is looked at: n^3 points, as offsets from its low corner in a volume's local space.
+std::vector<Vec3> lookup_offsets(const GridFrame& frame, float cell)
 {
-    float sum = 0.0f;
-    for (int z = 0; z < n; ++z) {
-        for (int y = 0; y < n; ++y) {
-            for (int x = 0; x < n; ++x) {
-                const Vec3 u = (Vec3(x, y, z) + 0.5f) / static_cast<float>(n);
-                sum += sample_local(*volume.density, Vec3(frame.point(lo + cell * u)));
-            }
-        }
+    const double voxels =
+        static_cast<double>(cell) * std::cbrt(std::abs(glm::determinant(frame.linear)));
+    const int n = voxels > 6.0 ? 3 : 2;
+    std::vector<Vec3> out;
+    for (int i = 0; i < n * n * n; ++i) {
+        const Vec3 u = (Vec3(i % n, i / n % n, i / (n * n)) + 0.5f) / static_cast<float>(n);
+        out.push_back(Vec3(frame.vector(cell * u)));
     }
-    return volume.density_scale * sum / static_cast<float>(n * n * n);
+    return out;
 }
 
 void add_volume(const Volume& volume, const SmokeCells& cells, std::vector<float>& sigma_t)
@@ -28,14 +27,16 @@ void add_volume(const Volume& volume, const SmokeCells& cells, std::vector<float
     if (!volume.density || !(volume.density_scale > 0.0f)) return;
     const Lattice& lattice = cells.lattice;
     const GridFrame frame = frames_at(volume, 0.5f).density;
-    const double voxels =
-        static_cast<double>(lattice.cell) * std::cbrt(std::abs(glm::determinant(frame.linear)));
-    const int n = voxels > 6.0 ? 3 : 2;
+    const std::vector<Vec3> offsets = lookup_offsets(frame, lattice.cell);
+    const float scale = volume.density_scale / static_cast<float>(offsets.size());
     parallel_for(lattice.size(), 4096, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
             if (cells.marks[i] != SmokeCells::Smoke) continue;
-            const Vec3 lo = lattice.lo + lattice.cell * Vec3(lattice.coordinates(i));
-            sigma_t[i] += mean_sigma_t(volume, frame, lo, lattice.cell, n);
+            const Vec3 corner = lattice.lo + lattice.cell * Vec3(lattice.coordinates(i));
+            const Vec3 p(frame.point(corner));
+            float sum = 0.0f;
+            for (const Vec3& offset : offsets) sum += sample_local(*volume.density, p + offset);
+            sigma_t[i] += scale * sum;
         }
     });
 }
