@@ -61,28 +61,31 @@ LightCells::LightCells(const Media& media, std::span<const LocalLight> lights, V
     if (clusters_.ids.empty()) return;
     everything_[1] = clusters_.light_count();
     for (const Volume& volume : media.volumes) phases_.push_back(volume.phase);
-    const int most_clusters =
-        std::min(std::clamp(params.most_clusters, 1, 256), clusters_.light_count());
+    const int most = std::clamp(params.most_clusters, 1, 256);
+    const int least = std::min({most, 64, clusters_.light_count()});
     const size_t most_cells =
-        std::min(params.most_cells, params.most_entries / static_cast<size_t>(most_clusters));
+        std::min(params.most_cells, params.most_entries / static_cast<size_t>(least));
     const SmokeCells smoke =
         find_smoke_cells(media, std::max(params.edge_voxels, 1.0f), most_cells);
     if (smoke.smoke_count == 0) return;
+    // More clusters where cells are few; half the entries is enough before cells are.
+    const size_t affordable = params.most_entries / 2 / (smoke.smoke_count + smoke.border_count);
+    const int most_clusters =
+        std::min(std::clamp(static_cast<int>(std::min<size_t>(affordable, 256)), least, most),
+                 clusters_.light_count());
     const CoarseExtinction extinction = make_coarse_extinction(media, smoke);
-    LightCellsParams exact = params;
-    exact.most_clusters = most_clusters;
-    make_cells(media, smoke, exact, extinction);
+    make_cells(media, smoke, extinction, most_clusters);
     fill_fluence(extinction);
     set_eye(eye);
 }
 
 void LightCells::make_cells(const Media& media, const SmokeCells& smoke,
-                            const LightCellsParams& params, const CoarseExtinction& extinction)
+                            const CoarseExtinction& extinction, int most_clusters)
 {
     lattice_ = smoke.lattice;
     cell_at_.assign(lattice_.size(), -1);
     // In blocks, so that what shares a cut lies together.
-    const bool one_cut = clusters_.light_count() <= params.most_clusters;
+    const bool one_cut = clusters_.light_count() <= most_clusters;
     std::vector<Vec3i> blocks;
     const Vec3i block_count = (lattice_.count + (block_edge - 1)) / block_edge;
     for (int bz = 0; bz < block_count.z; ++bz) {
@@ -105,7 +108,7 @@ void LightCells::make_cells(const Media& media, const SmokeCells& smoke,
         }
     }
     if (one_cut) blocks.resize(1);
-    make_cuts(extinction, blocks, params.most_clusters);
+    make_cuts(extinction, blocks, most_clusters);
     uint32_t entries = 0;
     for (Cell& cell : cells_) {
         cell.entry = entries;

@@ -51,7 +51,7 @@ inline constexpr int lane_count = 8;
     return y * (1.5f - 0.5f * x * y * y);
 }
 
-/// exp(x) for x in [-87, 0], to 4e-6; values below (and NaN) are held at exp(-87).
+/// exp(x) for x in [-87, 0], to 1e-5; values below (and NaN) are held at exp(-87).
 [[nodiscard, gnu::always_inline]] inline Float8 approximate_exp(Float8 x)
 {
     constexpr float magic = 0x1.8p23f;
@@ -63,7 +63,7 @@ inline constexpr int lane_count = 8;
     return mantissa * from_bits((__builtin_convertvector(whole, Int8) + 127) << 23);
 }
 
-/// log(x) for finite x >= 1, to 1e-5 absolute.
+/// log(x) for finite x >= 1, to 3e-5 absolute.
 [[nodiscard, gnu::always_inline]] inline Float8 approximate_log(Float8 x)
 {
     // x = m 2^e with m in [2/3, 4/3); log m from the series in (m - 1)/(m + 1).

@@ -16,11 +16,12 @@ struct LightPick {
 };
 
 struct LightCellsParams {
-    float edge_voxels = 4.0f;        ///< cell edge [voxels], at least. Larger: cheaper, more noise.
-    int most_clusters = 64;          ///< per cell, [1,256]. Cost and memory are linear.
-    float floor = 0.02f;             ///< share of choices that ignores what the cache knows, (0,1]
-    size_t most_cells = 1u << 17;    ///< cells grow to keep to it. 50 ms of one core at 1 light.
-    size_t most_entries = 1u << 22;  ///< cells times clusters; 6 bytes each, about 50 ns
+    float edge_voxels = 4.0f;  ///< cell edge [voxels], at least. Larger: cheaper, more noise.
+    /// Clusters per cell, [1,256]; 64 (or this, if less) where entries are short.
+    int most_clusters = 128;
+    float floor = 0.02f;  ///< share of choices that ignores what the cache knows, [0.001,1]
+    size_t most_cells = 1u << 17;    ///< cells grow to keep to it: 50 ms of one core for one light
+    size_t most_entries = 1u << 22;  ///< cells times clusters: 6 bytes and about 50 ns each
 };
 
 /// What many local lights bring to each place in the smoke, per frame: chooses lights for points,
@@ -39,7 +40,7 @@ class LightCells {
     LightCells(const Media& media, std::span<const LocalLight> lights, Vec3 eye,
                const LightCellsParams& params = {});
 
-    /// Distributions for another camera position [world]. Cost: about a fifth of building.
+    /// Distributions for another camera position [world]. Cost: about a seventh of building.
     void set_eye(Vec3 eye);
 
     /// Whether there are no lights to choose from.
@@ -92,8 +93,8 @@ class LightCells {
     [[nodiscard]] Row row_at(Vec3 x) const;
     /// Probability of going left at a node that is not a leaf.
     [[nodiscard]] double left_share(const LightCluster& node, int index, Vec3 x) const;
-    void make_cells(const Media& media, const SmokeCells& smoke, const LightCellsParams& params,
-                    const CoarseExtinction& extinction);
+    void make_cells(const Media& media, const SmokeCells& smoke, const CoarseExtinction& extinction,
+                    int most_clusters);
     void make_cuts(const CoarseExtinction& extinction, const std::vector<Vec3i>& blocks,
                    int most_clusters);
     void fill_fluence(const CoarseExtinction& extinction);

@@ -1,7 +1,7 @@
 // Light cells over a plume of 128 x 256 x 128 voxels with many lamps in and around it: what they
 // cost to build and to use, and how well they choose lights against the reference's light tree.
 //   bench_light_cells [optical depth through the middle, 8] [g, 0.3] [voxels across, 128]
-//                     [clusters per cell, 64] [effort, 1: points at which variance is taken]
+//                     [most clusters per cell, 128] [effort, 1: points at which variance is taken]
 //                     [most lights, 1000000]
 //   bench_light_cells scene.toml
 // CPU time of one process. "rel. variance" is that of one light sample at the collisions of camera
