@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "core/parallel.h"
+#include "restir/cluster_lanes.h"
 #include "restir/light_cells.h"
 #include "restir/light_cut.h"
 
@@ -14,18 +15,6 @@ constexpr int block_edge = 2;
 float blur2_of(float cell)
 {
     return 0.125f * sqr(cell);
-}
-
-float mean_extinction(const CoarseExtinction& extinction, Vec3i c)
-{
-    const size_t level = std::min<size_t>(2, extinction.levels.size() - 1);
-    const CoarseExtinction::Level& data = extinction.levels[level];
-    const Vec3i p = c >> static_cast<int>(level);
-    const auto row = static_cast<size_t>(data.count.x);
-    return data.sigma_t[(static_cast<size_t>(p.z) * static_cast<size_t>(data.count.y) +
-                         static_cast<size_t>(p.y)) *
-                            row +
-                        static_cast<size_t>(p.x)];
 }
 
 /// The volume that scatters most at each cell, or at its neighbours if there is nothing; 0 if
@@ -72,28 +61,31 @@ LightCells::LightCells(const Media& media, std::span<const LocalLight> lights, V
     if (clusters_.ids.empty()) return;
     everything_[1] = clusters_.light_count();
     for (const Volume& volume : media.volumes) phases_.push_back(volume.phase);
-    const int most_clusters =
-        std::min(std::clamp(params.most_clusters, 1, 256), clusters_.light_count());
+    const int most = std::clamp(params.most_clusters, 1, 256);
+    const int least = std::min({most, 64, clusters_.light_count()});
     const size_t most_cells =
-        std::min(params.most_cells, params.most_entries / static_cast<size_t>(most_clusters));
+        std::min(params.most_cells, params.most_entries / static_cast<size_t>(least));
     const SmokeCells smoke =
         find_smoke_cells(media, std::max(params.edge_voxels, 1.0f), most_cells);
     if (smoke.smoke_count == 0) return;
+    // More clusters where cells are few; half the entries is enough before cells are.
+    const size_t affordable = params.most_entries / 2 / (smoke.smoke_count + smoke.border_count);
+    const int most_clusters =
+        std::min(std::clamp(static_cast<int>(std::min<size_t>(affordable, 256)), least, most),
+                 clusters_.light_count());
     const CoarseExtinction extinction = make_coarse_extinction(media, smoke);
-    LightCellsParams exact = params;
-    exact.most_clusters = most_clusters;
-    make_cells(media, smoke, exact, extinction);
+    make_cells(media, smoke, extinction, most_clusters);
     fill_fluence(extinction);
     set_eye(eye);
 }
 
 void LightCells::make_cells(const Media& media, const SmokeCells& smoke,
-                            const LightCellsParams& params, const CoarseExtinction& extinction)
+                            const CoarseExtinction& extinction, int most_clusters)
 {
     lattice_ = smoke.lattice;
     cell_at_.assign(lattice_.size(), -1);
     // In blocks, so that what shares a cut lies together.
-    const bool one_cut = clusters_.light_count() <= params.most_clusters;
+    const bool one_cut = clusters_.light_count() <= most_clusters;
     std::vector<Vec3i> blocks;
     const Vec3i block_count = (lattice_.count + (block_edge - 1)) / block_edge;
     for (int bz = 0; bz < block_count.z; ++bz) {
@@ -116,7 +108,7 @@ void LightCells::make_cells(const Media& media, const SmokeCells& smoke,
         }
     }
     if (one_cut) blocks.resize(1);
-    make_cuts(extinction, blocks, params.most_clusters);
+    make_cuts(extinction, blocks, most_clusters);
     uint32_t entries = 0;
     for (Cell& cell : cells_) {
         cell.entry = entries;
@@ -127,8 +119,6 @@ void LightCells::make_cells(const Media& media, const SmokeCells& smoke,
         for (size_t i = begin; i < end; ++i) {
             const Vec3 centre = lattice_.centre(lattice_.coordinates(cells_[i].position));
             cells_[i].volume = main_volume.at(centre, lattice_.cell);
-            cells_[i].sigma_t =
-                mean_extinction(extinction, lattice_.coordinates(cells_[i].position));
         }
     });
     fluence_.resize(entries);
@@ -172,20 +162,52 @@ void LightCells::make_cuts(const CoarseExtinction& extinction, const std::vector
     }
 }
 
+/// The clusters of a cut, side by side.
+class LightCells::CutLanes {
+  public:
+    void load(const LightCells& cells, const Cut& cut)
+    {
+        if (&cut == loaded_) return;
+        loaded_ = &cut;
+        batches_.assign((cut.count + lane_count - 1) / lane_count, {});
+        for (uint32_t n = 0; n < cut.count; ++n) {
+            const int node = cells.nodes_[cut.first + n];
+            batches_[n / lane_count].set(static_cast<int>(n % lane_count),
+                                         cells.clusters_.nodes[static_cast<size_t>(node)]);
+        }
+    }
+    [[nodiscard]] const std::vector<ClusterLanes>& batches() const { return batches_; }
+
+  private:
+    const Cut* loaded_ = nullptr;  // neighbours share their cuts
+    std::vector<ClusterLanes> batches_;
+};
+
 void LightCells::fill_fluence(const CoarseExtinction& extinction)
 {
+    constexpr int steps = 16;
     const float blur2 = blur2_of(lattice_.cell);
     parallel_for(cells_.size(), 64, [&](size_t begin, size_t end) {
+        CutLanes lanes;
         for (size_t i = begin; i < end; ++i) {
-            const Cell& cell = cells_[i];
+            Cell& cell = cells_[i];
             const Cut& cut = cuts_[cell.cut];
+            lanes.load(*this, cut);
             const Vec3 x = lattice_.centre(lattice_.coordinates(cell.position));
-            for (uint32_t n = 0; n < cut.count; ++n) {
-                const LightCluster& cluster =
-                    clusters_.nodes[static_cast<size_t>(nodes_[cut.first + n])];
-                const float tau = coarse_optical_depth(extinction, x, cluster.centre);
-                fluence_[cell.entry + n] = cluster_fluence(cluster, x, blur2) * std::exp(-tau);
+            float expected = 0.0f;
+            float chosen = 0.0f;
+            uint32_t n = 0;
+            for (const ClusterLanes& batch : lanes.batches()) {
+                FluenceLanes fluence;
+                eval_fluence(batch, extinction, x, blur2, steps, fluence);
+                for (int l = 0; l < lane_count && n < cut.count; ++l, ++n) {
+                    fluence_[cell.entry + n] = fluence.weight[l];
+                    expected += fluence.expected[l];
+                    chosen += fluence.weight[l];
+                }
             }
+            const float certainty = expected / chosen;
+            cell.certainty = certainty > 0.0f && certainty < 1.0f ? certainty : 1.0f;
         }
     });
 }
@@ -193,38 +215,35 @@ void LightCells::fill_fluence(const CoarseExtinction& extinction)
 void LightCells::set_eye(Vec3 eye)
 {
     parallel_for(cells_.size(), 64, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i) fill_cell(cells_[i], eye);
+        CutLanes lanes;
+        for (size_t i = begin; i < end; ++i) {
+            lanes.load(*this, cuts_[cells_[i].cut]);
+            fill_cell(cells_[i], lanes, eye);
+        }
     });
     fill_inscatter();
 }
 
-void LightCells::fill_cell(const Cell& cell, Vec3 eye)
+void LightCells::fill_cell(const Cell& cell, const CutLanes& lanes, Vec3 eye)
 {
     const Vec3 x = lattice_.centre(lattice_.coordinates(cell.position));
     const Cut& cut = cuts_[cell.cut];
-    const Phase& phase = phases_[cell.volume];
     const float blur2 = blur2_of(lattice_.cell);
     const Vec3 to_eye = eye - x;
     const Vec3 wo = to_eye / std::max(glm::length(to_eye), 1e-30f);
     float weight[256];
     float total = 0.0f;
-    for (uint32_t n = 0; n < cut.count; ++n) {
-        const LightCluster& cluster = clusters_.nodes[static_cast<size_t>(nodes_[cut.first + n])];
-        const Vec3 to_light = cluster.centre - x;
-        const float distance2 = glm::dot(to_light, to_light);
-        const float wide2 = distance2 + cluster.spread2 + blur2;
-        const float inv_wide = 1.0f / std::sqrt(std::max(wide2, 1e-30f));
-        const float distance = std::sqrt(distance2);
-        // A lobe averaged over a range of directions of mean cosine a is about one of a times g.
-        const float a = distance * inv_wide;
-        const float cos_theta = -glm::dot(wo, to_light) / std::max(distance, 1e-30f);
-        float p = eval_hg(cos_theta, a * phase.g);
-        if (phase.weight_b > 0.0f) p += phase.weight_b * (eval_hg(cos_theta, a * phase.g_b) - p);
-        const float w = fluence_[cell.entry + n] * p;
-        weight[n] = w > 0.0f ? std::min(w, 1e30f) : 0.0f;
-        total += weight[n];
+    uint32_t n = 0;
+    for (const ClusterLanes& batch : lanes.batches()) {
+        Float8 phase;
+        eval_phase(batch, x, wo, phases_[cell.volume], blur2, phase);
+        for (int l = 0; l < lane_count && n < cut.count; ++l, ++n) {
+            const float w = fluence_[cell.entry + n] * phase[l];
+            weight[n] = w > 0.0f ? std::min(w, 1e30f) : 0.0f;
+            total += weight[n];
+        }
     }
-    scattered_[static_cast<size_t>(cell_at_[cell.position])] = total;
+    scattered_[static_cast<size_t>(cell_at_[cell.position])] = total * cell.certainty;
 
     const float known = total > 0.0f ? (1.0f - floor_share_) / total : 0.0f;
     const float left_over = total > 0.0f ? floor_share_ : 1.0f;
@@ -233,14 +252,18 @@ void LightCells::fill_cell(const Cell& cell, Vec3 eye)
         static_cast<float>(0.5 * static_cast<double>(left_over) / clusters_.share_sum.back());
     const float by_count = 0.5f * left_over / static_cast<float>(cut.count);
     const int* begins = begins_.data() + cut.first;
-    double sum = 0.0;
-    float* cdf = cdf_.data() + cell.entry;
-    for (uint32_t n = 0; n < cut.count; ++n) {
+    float sum = 0.0f;
+    uint16_t* cdf = cdf_.data() + cell.entry;
+    uint32_t before = 0;
+    for (n = 0; n < cut.count; ++n) {
         const auto share = static_cast<float>(sums[begins[n + 1]] - sums[begins[n]]);
-        sum += static_cast<double>(known * weight[n] + by_power * share + by_count);
-        cdf[n] = static_cast<float>(std::min(sum, 1.0));
+        sum += known * weight[n] + by_power * share + by_count;
+        // Every entry keeps at least one quantum, those that follow included.
+        const uint32_t most = 65536 - (cut.count - 1 - n);
+        before = std::clamp(static_cast<uint32_t>(65536.0f * std::min(sum, 1.0f) + 0.5f),
+                            before + 1, most);
+        cdf[n] = static_cast<uint16_t>(std::min(before, 65535u));
     }
-    cdf[cut.count - 1] = 1.0f;
 }
 
 void LightCells::fill_inscatter()

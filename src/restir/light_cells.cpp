@@ -2,21 +2,51 @@
 
 #include <algorithm>
 
-#include "restir/light_cut.h"
-
 namespace mote {
 namespace {
 
-/// Index of the first value above u; the last one is 1, so there always is one.
-uint32_t first_above(const float* cdf, uint32_t count, double u)
+/// Probabilities of a cell's entries are whole multiples of this.
+constexpr double quantum = 1.0 / 65536.0;
+
+/// How many of the first count - 1 values of an ascending row are not above x. Vectors count all of
+/// them before a search by halving has recovered from its first mispredicted branch.
+template <class T>
+uint32_t count_up_to(const T* row, uint32_t count, T x)
 {
-    const float* found = std::upper_bound(
-        cdf, cdf + count - 1, u, [](double a, float b) { return a < static_cast<double>(b); });
-    return static_cast<uint32_t>(found - cdf);
+    T n = 0;
+    for (uint32_t i = 0; i + 1 < count; ++i) n = static_cast<T>(n + (row[i] <= x ? 1 : 0));
+    return static_cast<uint32_t>(n);
 }
 
-constexpr float whole = 1.0f;
+/// Start and length of an entry's interval of [0, 65536).
+struct Share {
+    double lo, size;
+};
+
+Share share_of(const uint16_t* cdf, uint32_t count, uint32_t i)
+{
+    const int lo = i > 0 ? cdf[i - 1] : 0;
+    const int hi = i + 1 < count ? cdf[i] : 65536;
+    return {static_cast<double>(lo), static_cast<double>(hi - lo)};
+}
+
+constexpr uint16_t whole = 65535;
 constexpr int everywhere_nodes[1] = {0};
+
+/// Squared distance at which a cluster counts as seen from x.
+float effective_distance2(const LightCluster& cluster, Vec3 x, float least2)
+{
+    const Vec3 to_x = x - cluster.centre;
+    return std::max(glm::dot(to_x, to_x), std::max(0.5f * cluster.spread2, least2));
+}
+
+/// How much more a cluster shines towards x than to all sides on average, as in eval_fluence.
+float towards(const LightCluster& cluster, Vec3 x, float distance2)
+{
+    if (cluster.facing == Vec3(0.0f)) return 1.0f;
+    const float cos_theta = glm::dot(cluster.facing, x - cluster.centre) / std::sqrt(distance2);
+    return std::max(0.05f, 1.0f + 2.0f * cos_theta);
+}
 
 }  // namespace
 
@@ -29,22 +59,23 @@ LightCells::Row LightCells::row_at(Vec3 x) const
             const Cell& cell = cells_[static_cast<size_t>(i)];
             const Cut& cut = cuts_[cell.cut];
             return {cdf_.data() + cell.entry, nodes_.data() + cut.first, begins_.data() + cut.first,
-                    cut.count, cell.sigma_t};
+                    cut.count};
         }
     }
-    return {&whole, everywhere_nodes, everything_, 1, 0.0f};
+    return {&whole, everywhere_nodes, everything_, 1};
 }
 
-double LightCells::left_share(const LightCluster& node, int index, Vec3 x, float sigma_t) const
+double LightCells::left_share(const LightCluster& node, int index, Vec3 x) const
 {
     const LightCluster& left = clusters_.nodes[static_cast<size_t>(index) + 1];
     const LightCluster& right = clusters_.nodes[static_cast<size_t>(node.right)];
-    const float blur2 = sqr(0.125f * lattice_.cell);
-    const float nearer = glm::length(x - right.centre) - glm::length(x - left.centre);
-    const float fade = std::exp(std::clamp(0.0f * nearer, -10.0f, 10.0f));
-    const float a = std::min(cluster_fluence(left, x, blur2) * fade, 1e37f);
-    const float b = std::min(cluster_fluence(right, x, blur2), 1e37f);
-    const float known = a + b > 0.0f ? a / (a + b) : 0.5f;
+    const float least2 = sqr(0.125f * lattice_.cell) + 1e-30f;
+    const float left2 = effective_distance2(left, x, least2);
+    const float right2 = effective_distance2(right, x, least2);
+    // Powers over squared distances, on their common denominator.
+    const float a = left.power * right2 * towards(left, x, left2);
+    const float b = right.power * left2 * towards(right, x, right2);
+    const float known = a + b > 0.0f && a + b < infinity ? a / (a + b) : 0.5f;
     const float by_count =
         static_cast<float>(left.end - left.begin) / static_cast<float>(node.end - node.begin);
     return static_cast<double>(0.98f * known + 0.02f * by_count);
@@ -55,15 +86,16 @@ LightPick LightCells::sample(Vec3 x, double u) const
     if (clusters_.ids.empty()) return {};
     if (clusters_.ids.size() == 1) return {clusters_.ids[0], 1.0f};
     const Row row = row_at(x);
-    const uint32_t i = first_above(row.cdf, row.count, u);
-    const float lo = i > 0 ? row.cdf[i - 1] : 0.0f;
-    double pmf = static_cast<double>(row.cdf[i] - lo);
-    double rest = (u - static_cast<double>(lo)) / pmf;
+    const double scaled = 65536.0 * (u > 0.0 ? std::min(u, 1.0 - 0x1p-53) : 0.0);
+    const uint32_t i = count_up_to(row.cdf, row.count, static_cast<uint16_t>(scaled));
+    const Share share = share_of(row.cdf, row.count, i);
+    double pmf = share.size * quantum;
+    double rest = (scaled - share.lo) / share.size;
     // What is left of u goes down the tree from here.
     int index = row.nodes[i];
     const LightCluster* node = &clusters_.nodes[static_cast<size_t>(index)];
     while (!node->is_leaf()) {
-        const double left = left_share(*node, index, x, row.sigma_t);
+        const double left = left_share(*node, index, x);
         const bool goes_left = rest < left;
         rest = goes_left ? rest / left : (rest - left) / (1.0 - left);
         pmf *= goes_left ? left : 1.0 - left;
@@ -88,13 +120,12 @@ float LightCells::pmf(int light, Vec3 x) const
     if (place < 0) return 0.0f;
     if (clusters_.ids.size() == 1) return 1.0f;
     const Row row = row_at(x);
-    const int* found = std::upper_bound(row.begins + 1, row.begins + row.count, place);
-    const auto i = static_cast<size_t>(found - row.begins - 1);
-    double pmf = static_cast<double>(row.cdf[i] - (i > 0 ? row.cdf[i - 1] : 0.0f));
+    const uint32_t i = count_up_to(row.begins + 1, row.count, place);
+    double pmf = share_of(row.cdf, row.count, i).size * quantum;
     int index = row.nodes[i];
     const LightCluster* node = &clusters_.nodes[static_cast<size_t>(index)];
     while (!node->is_leaf()) {
-        const double left = left_share(*node, index, x, row.sigma_t);
+        const double left = left_share(*node, index, x);
         const bool goes_left = place < clusters_.nodes[static_cast<size_t>(node->right)].begin;
         pmf *= goes_left ? left : 1.0 - left;
         index = goes_left ? index + 1 : node->right;
@@ -132,10 +163,10 @@ float LightCells::inscatter(Vec3 x) const
 size_t LightCells::memory_bytes() const
 {
     const auto bytes = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
-    return bytes(clusters_.nodes) + bytes(clusters_.ids) + bytes(clusters_.place_of_id) +
-           bytes(clusters_.share_sum) + bytes(cell_at_) + bytes(inscatter_) + bytes(cells_) +
-           bytes(cuts_) + bytes(nodes_) + bytes(begins_) + bytes(fluence_) + bytes(cdf_) +
-           bytes(scattered_);
+    return bytes(clusters_.nodes) + bytes(clusters_.bounds) + bytes(clusters_.ids) +
+           bytes(clusters_.place_of_id) + bytes(clusters_.share_sum) + bytes(cell_at_) +
+           bytes(inscatter_) + bytes(cells_) + bytes(cuts_) + bytes(nodes_) + bytes(begins_) +
+           bytes(fluence_) + bytes(cdf_) + bytes(scattered_);
 }
 
 }  // namespace mote

@@ -16,11 +16,12 @@ struct LightPick {
 };
 
 struct LightCellsParams {
-    float edge_voxels = 4.0f;        ///< cell edge [voxels], at least. Larger: cheaper, more noise.
-    int most_clusters = 64;          ///< per cell, [1,256]. Cost and memory are linear.
-    float floor = 0.02f;             ///< share of choices that ignores what the cache knows, (0,1]
-    size_t most_cells = 1u << 17;    ///< cells grow to keep to it. 50 ms of one core at 1 light.
-    size_t most_entries = 1u << 22;  ///< cells times clusters; 8 bytes each, about 50 ns
+    float edge_voxels = 4.0f;  ///< cell edge [voxels], at least. Larger: cheaper, more noise.
+    /// Clusters per cell, [1,256]; 64 (or this, if less) where entries are short.
+    int most_clusters = 128;
+    float floor = 0.02f;  ///< share of choices that ignores what the cache knows, [0.001,1]
+    size_t most_cells = 1u << 17;    ///< cells grow to keep to it: 50 ms of one core for one light
+    size_t most_entries = 1u << 22;  ///< cells times clusters: 6 bytes and about 50 ns each
 };
 
 /// What many local lights bring to each place in the smoke, per frame: chooses lights for points,
@@ -39,7 +40,7 @@ class LightCells {
     LightCells(const Media& media, std::span<const LocalLight> lights, Vec3 eye,
                const LightCellsParams& params = {});
 
-    /// Distributions for another camera position [world]. Cost: about a fifth of building.
+    /// Distributions for another camera position [world]. Cost: about a seventh of building.
     void set_eye(Vec3 eye);
 
     /// Whether there are no lights to choose from.
@@ -71,11 +72,11 @@ class LightCells {
   private:
     /// A cell with a distribution.
     struct Cell {
-        uint32_t position = 0;  ///< in the lattice
-        uint32_t cut = 0;       ///< into cuts_
-        uint32_t entry = 0;     ///< first of its entries in fluence_ and cdf_
-        uint32_t volume = 0;    ///< whose phase function counts here
-        float sigma_t = 0.0f;   ///< mean extinction around here [1/m]
+        uint32_t position = 0;   ///< in the lattice
+        uint32_t cut = 0;        ///< into cuts_
+        uint32_t entry = 0;      ///< first of its entries in fluence_ and cdf_
+        uint32_t volume = 0;     ///< whose phase function counts here
+        float certainty = 1.0f;  ///< expected fluence over the larger one that chooses lights
     };
     /// The clusters that the cells of one block of 2^3 share.
     struct Cut {
@@ -84,22 +85,21 @@ class LightCells {
     };
     /// What the cache says of one cell, or of everywhere outside.
     struct Row {
-        const float* cdf = nullptr;  ///< count values, the last is 1
+        const uint16_t* cdf = nullptr;
         const int* nodes = nullptr;
         const int* begins = nullptr;  ///< first light of each range and the end of the last
         uint32_t count = 0;
-        float sigma_t = 0.0f;
     };
     [[nodiscard]] Row row_at(Vec3 x) const;
     /// Probability of going left at a node that is not a leaf.
-    [[nodiscard]] double left_share(const LightCluster& node, int index, Vec3 x,
-                                    float sigma_t) const;
-    void make_cells(const Media& media, const SmokeCells& smoke, const LightCellsParams& params,
-                    const CoarseExtinction& extinction);
+    [[nodiscard]] double left_share(const LightCluster& node, int index, Vec3 x) const;
+    void make_cells(const Media& media, const SmokeCells& smoke, const CoarseExtinction& extinction,
+                    int most_clusters);
     void make_cuts(const CoarseExtinction& extinction, const std::vector<Vec3i>& blocks,
                    int most_clusters);
     void fill_fluence(const CoarseExtinction& extinction);
-    void fill_cell(const Cell& cell, Vec3 eye);
+    class CutLanes;
+    void fill_cell(const Cell& cell, const CutLanes& lanes, Vec3 eye);
     void fill_inscatter();
 
     LightClusters clusters_;
@@ -111,10 +111,12 @@ class LightCells {
     float least_inscatter_ = 1.0f;
     std::vector<Cell> cells_;
     std::vector<Cut> cuts_;
-    std::vector<int> nodes_;        ///< of all cuts, into clusters_.nodes
-    std::vector<int> begins_;       ///< of all cuts, one more each than nodes
-    std::vector<float> fluence_;    ///< per entry: shadowed, before scattering [W/m^2]
-    std::vector<float> cdf_;        ///< per entry
+    std::vector<int> nodes_;      ///< of all cuts, into clusters_.nodes
+    std::vector<int> begins_;     ///< of all cuts, one more each than nodes
+    std::vector<float> fluence_;  ///< per entry: shadowed, before scattering [W/m^2]
+    /// Per entry: 65536 times the probability of the cell's entries up to this one, rounded so that
+    /// each has at least 1. The last of a cell stands for 65536.
+    std::vector<uint16_t> cdf_;
     std::vector<float> scattered_;  ///< per cell: sum of what is scattered to the eye
     int everything_[2] = {0, 0};    ///< the one range used outside
 };

@@ -25,8 +25,6 @@ LightCluster merge(const LightCluster& a, const LightCluster& b)
     out.facing = a.facing + share * (b.facing - a.facing);
     out.spread2 = a.spread2 + share * (b.spread2 - a.spread2) +
                   share * (1.0f - share) * glm::dot(apart, apart);
-    out.bounds = a.bounds;
-    out.bounds.extend(b.bounds);
     out.begin = a.begin;
     out.end = b.end;
     return out;
@@ -46,12 +44,15 @@ class Builder {
     {
         const size_t index = out_.nodes.size();
         out_.nodes.emplace_back();
+        Bounds3 box;
+        for (size_t i = begin; i < end; ++i) box.extend(places_[i].position);
+        out_.bounds.push_back(box);
         if (end - begin <= leaf_size_) {
             out_.nodes[index] = leaf(begin, end);
             return static_cast<int>(index);
         }
         const size_t middle = begin + (end - begin) / 2;
-        split(begin, middle, end);
+        split(begin, middle, end, box.extent());
         build(begin, middle);
         const int right = build(middle, end);
         LightCluster node = merge(out_.nodes[index + 1], out_.nodes[static_cast<size_t>(right)]);
@@ -63,11 +64,8 @@ class Builder {
     [[nodiscard]] const std::vector<Place>& places() const { return places_; }
 
   private:
-    void split(size_t begin, size_t middle, size_t end)
+    void split(size_t begin, size_t middle, size_t end, Vec3 extent)
     {
-        Bounds3 box;
-        for (size_t i = begin; i < end; ++i) box.extend(places_[i].position);
-        const Vec3 extent = box.extent();
         int axis = extent.y > extent.x ? 1 : 0;
         if (extent.z > extent[axis]) axis = 2;
         const auto at = [this](size_t i) {
@@ -90,7 +88,6 @@ class Builder {
             one.power = light.power;
             one.facing = light.facing;
             one.spread2 = light.spread2;
-            one.bounds = {light.position, light.position};
             one.begin = static_cast<int>(i);
             one.end = static_cast<int>(i + 1);
             sum = i == begin ? one : merge(sum, one);
@@ -110,7 +107,9 @@ LightClusters make_light_clusters(std::span<const LocalLight> lights)
 {
     LightClusters out;
     if (lights.empty()) return out;
-    out.nodes.reserve(2 * std::min(lights.size(), 2 * most_leaves));
+    const size_t most_nodes = 2 * std::min(lights.size(), 2 * most_leaves);
+    out.nodes.reserve(most_nodes);
+    out.bounds.reserve(most_nodes);
     Builder builder(lights, out);
     builder.build(0, lights.size());
 

@@ -82,6 +82,15 @@ float voxel_size(const Volume& volume)
     return static_cast<float>(size);
 }
 
+/// Volume of the bricks with smoke [m^3].
+double brick_volume(const Volume& volume)
+{
+    const auto count = std::count_if(volume.density->table.begin(), volume.density->table.end(),
+                                     [](int32_t entry) { return entry > 0; });
+    const double voxel = std::abs(glm::determinant(world_from_local(volume, 0.5f)));
+    return static_cast<double>(count) * 512.0 * voxel;
+}
+
 void mark_box(const Bounds3& box, SmokeCells& cells)
 {
     const Lattice& lattice = cells.lattice;
@@ -157,11 +166,13 @@ SmokeCells find_smoke_cells(const Media& media, float edge_voxels, size_t most_c
     Bounds3 bounds;
     const Volume* first = nullptr;
     float voxel = infinity;
+    double smoke = 0.0;
     for (const Volume& volume : media.volumes) {
         if (!has_smoke(volume)) continue;
         if (!first) first = &volume;
         bounds.extend(world_bounds(volume));
         voxel = std::min(voxel, voxel_size(volume));
+        smoke += brick_volume(volume);
     }
     SmokeCells cells;
     if (!first || bounds.is_empty() || !is_finite(bounds.lo) || !is_finite(bounds.hi)) return cells;
@@ -171,6 +182,8 @@ SmokeCells find_smoke_cells(const Media& media, float edge_voxels, size_t most_c
     edge = std::max(edge,
                     std::cbrt(extent.x * extent.y * extent.z / (most * most_positions_per_cell)));
     edge = std::max(edge, std::max(extent.x, std::max(extent.y, extent.z)) / 4096.0);
+    // About as many cells as the bricks fill; the loop below does the rest.
+    edge = std::max(edge, std::cbrt(smoke / most));
     const Vec3 anchor(world_from_local(*first, 0.5f)[3]);
     for (int round = 0;; ++round) {
         cells = {};
