@@ -85,7 +85,7 @@ void bind_bench(CLI::App& app, BenchOptions& o)
         ->type_name("METHOD");
     app.add_option("--reference-time", o.reference_time,
                    "CPU time of the reference image [s]. Default: that of all runs together")
-        ->check(CLI::Range(1e-3, 1e6))
+        ->check(CLI::Range(1e-6, 1e6))
         ->type_name("S");
     app.add_option("--seed", o.seed, "Seed of the first run")
         ->check(CLI::Range(0, 1'000'000'000))

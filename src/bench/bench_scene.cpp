@@ -36,7 +36,7 @@ struct Bench {
     const BenchHooks& hooks;
     int frame = 0;
     std::vector<BenchMode> modes;
-    SceneCache cache;
+    std::vector<FramePlan> plans;  ///< of each mode
     std::vector<Method> methods;
     std::vector<Pilot> pilots;
     std::vector<int> samples;  ///< of each method
@@ -46,10 +46,8 @@ struct Bench {
     {
         if (hooks.say) hooks.say(line);
     }
-    [[nodiscard]] FramePlan plan(BenchMode mode)
-    {
-        return plan_frames(scene, mode, frame, params.frames, cache);
-    }
+    /// The frame compared, alone.
+    [[nodiscard]] FramePlan last_frame() const { return {{plans.front().frames.back()}, 1}; }
 };
 
 int frames_rendered(const FramePlan& plan, const Method& method)
@@ -87,8 +85,7 @@ RunFigures figures_of(const PlayedRun& run, const PixelStats& reference)
 /// Renders the reference image, for about `seconds` of CPU time.
 ReferenceInfo render_reference(Bench& bench, double seconds)
 {
-    const FramePlan still = bench.plan(bench.modes.front());
-    const FramePlan last{{still.frames.back()}, 1};
+    const FramePlan last = bench.last_frame();
     Method method;
     Pilot pilot;
     const int best = best_reference_row(bench.methods, bench.pilots);
@@ -125,9 +122,10 @@ ReferenceInfo render_reference(Bench& bench, double seconds)
 }
 
 /// Runs all methods in turns; fewer rounds than asked for once `seconds` have passed (0: no limit).
-ModeResult run_mode(Bench& bench, BenchMode mode, int rounds, double seconds)
+ModeResult run_mode(const Bench& bench, size_t mode_index, int rounds, double seconds)
 {
-    const FramePlan plan = bench.plan(mode);
+    const BenchMode mode = bench.modes[mode_index];
+    const FramePlan& plan = bench.plans[mode_index];
     ModeResult result;
     result.mode = mode;
     for (size_t i = 0; i < bench.methods.size(); ++i) {
@@ -162,10 +160,15 @@ ModeResult run_mode(Bench& bench, BenchMode mode, int rounds, double seconds)
     return result;
 }
 
-/// Chooses methods and their samples from short runs.
+/// Makes the frames, and chooses methods and their samples from short runs.
 void prepare(Bench& bench)
 {
-    const FramePlan plan = bench.plan(bench.modes.front());
+    SceneCache cache;
+    for (const BenchMode mode : bench.modes) {
+        bench.plans.push_back(
+            plan_frames(bench.scene, mode, bench.frame, bench.params.frames, cache));
+    }
+    const FramePlan plan = bench.last_frame();
     bench.methods = choose_methods(bench.params.methods, traits_of(plan.frames.back()));
     bench.say(fmt::format("short runs of {} methods", bench.methods.size()));
     for (const Method& method : bench.methods) {
@@ -186,7 +189,7 @@ SceneResult bench_scene(const SceneDescription& scene, const BenchParams& params
     prepare(bench);
 
     double round = 0.0;
-    for (const BenchMode mode : bench.modes) round += round_seconds(bench, bench.plan(mode));
+    for (const FramePlan& plan : bench.plans) round += round_seconds(bench, plan);
     const double left = std::max(params.time_budget - (now() - start), 0.0);
     int rounds = params.runs;
     double reference_seconds = params.runs * round;
@@ -201,9 +204,9 @@ SceneResult bench_scene(const SceneDescription& scene, const BenchParams& params
         scene.path,  scene.name, scene.hash, scene.render.width, scene.render.height, bench.frame,
         params.seed, {},         {}};
     result.reference = render_reference(bench, reference_seconds);
-    for (const BenchMode mode : bench.modes) {
-        const double share = runs_share * left / static_cast<double>(bench.modes.size());
-        result.modes.push_back(run_mode(bench, mode, rounds, share));
+    const double share = runs_share * left / static_cast<double>(bench.modes.size());
+    for (size_t i = 0; i < bench.modes.size(); ++i) {
+        result.modes.push_back(run_mode(bench, i, rounds, share));
     }
     return result;
 }

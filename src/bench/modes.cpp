@@ -81,12 +81,16 @@ FramePlan plan_frames(const SceneDescription& scene, BenchMode mode, int frame,
     PrepareNeeds needs;
     needs.velocity = mode == BenchMode::Moving;
     needs.velocity_may_be_missing = true;
-    for (int number = frame - frame_count + 1; number <= frame; ++number) {
-        PrepareStats ignored;
-        const int shown = mode == BenchMode::Moving ? number : frame;
-        plan.frames.push_back(prepare_frame(scene, shown, needs, cache, ignored));
+    PrepareStats ignored;
+    const auto prepare = [&](int number) {
+        return prepare_frame(scene, number, needs, cache, ignored);
+    };
+    const Scene last = prepare(frame);
+    for (int number = frame - frame_count + 1; number < frame; ++number) {
+        plan.frames.push_back(mode == BenchMode::Moving ? prepare(number) : last);
         plan.frames.back().frame = number;
     }
+    plan.frames.push_back(last);
     return plan;
 }
 

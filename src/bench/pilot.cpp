@@ -22,7 +22,6 @@ constexpr double most_samples = 1e6;
 Pilot run_pilot(const FramePlan& plan, const Method& method, const RenderDescription& render,
                 StopRequested stop)
 {
-    const FramePlan last{{plan.frames.back()}, 1};
     RenderDescription edited = render;
     method.edit(edited);
     edited.samples = std::max(method.samples_per_frame, 1);
@@ -30,7 +29,7 @@ Pilot run_pilot(const FramePlan& plan, const Method& method, const RenderDescrip
     double seconds = 0.0;
     for (uint32_t k = 0; k < 2; ++k) {
         edited.seed = pilot_seed + k;
-        const PlayedRun run = play_run(last, method.keeps_history, edited, stop);
+        const PlayedRun run = play_run(plan, method.keeps_history, edited, stop);
         add_run(stats, run.image);
         const double without_caches = run.cpu_seconds - run.cache_cpu_seconds;
         // Others on the machine only ever make it slower.

@@ -13,7 +13,7 @@ struct Pilot {
     double sample_variance = 0.0;  ///< of it, averaged over the image without the worst pixels
 };
 
-/// Renders the plan's last frame twice.
+/// Renders a plan of one frame twice.
 [[nodiscard]] Pilot run_pilot(const FramePlan& plan, const Method& method,
                               const RenderDescription& render, StopRequested stop);
 

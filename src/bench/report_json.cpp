@@ -144,6 +144,13 @@ SceneResult scene_from(const Json& j)
     return scene;
 }
 
+std::string csv_quote(const std::string& text)
+{
+    std::string quoted = "\"";
+    for (const char c : printable(text, 1000)) quoted += c == '"' ? "\"\"" : std::string(1, c);
+    return quoted + '"';
+}
+
 }  // namespace
 
 std::string bench_json(const BenchReport& report)
@@ -167,7 +174,7 @@ std::string bench_csv(const BenchReport& report)
         for (const ModeResult& mode : scene.modes) {
             for (const MethodResult& row : mode.rows) {
                 const MethodFigures& f = row.figures;
-                text += fmt::format("{},{},{},{},{},{},{},{},{}", Json(scene.path).dump(),
+                text += fmt::format("{},{},{},{},{},{},{},{},{}", csv_quote(scene.path),
                                     mode_name(mode.mode), row.name, scene.width, scene.height,
                                     scene.frame, row.samples, row.frames, row.runs.size());
                 for (const double x :

@@ -8,7 +8,8 @@ namespace mote {
 inline constexpr double trimmed_share = 1e-3;
 
 /// Squared errors of one image, averaged over pixels and channels. The noise of the reference is
-/// subtracted, so they are unbiased and may fall below 0 where the reference is the noisier one.
+/// subtracted, so that mse is unbiased, and may fall below 0 where the reference is the noisier
+/// one. rel_mse divides by the reference itself, so it needs one that is accurate in every pixel.
 struct RunError {
     double mse = 0.0;          ///< over the square of the reference's mean: its nVar if unbiased
     double trimmed_mse = 0.0;  ///< without the worst trimmed_share of the pixels
