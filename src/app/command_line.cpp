@@ -7,8 +7,10 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include "app/bench_options.h"
 #include "app/compare_threshold.h"
 #include "app/exit_codes.h"
+#include "app/shared_options.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "volumes/walk_isa.h"
@@ -53,21 +55,6 @@ CLI::Option* add_choice(CLI::App& app, const std::string& name, T& value,
         ->type_name(words);
 }
 
-void bind_log(CLI::App& app, LogOptions& log)
-{
-    app.add_flag("-q,--quiet", log.quiet, "Errors only, no progress");
-    app.add_flag("-v,--verbose", log.verbosity, "Say what is done; -vv says more");
-    app.add_option("--log-file", log.file, "Write the log to this file as well")->type_name("FILE");
-}
-
-void bind_overrides(CLI::App& app, std::vector<std::string>& overrides)
-{
-    app.add_option("--set", overrides,
-                   "Override a scene value, e.g. volumes.smoke.density_scale=4; repeatable")
-        ->type_name("KEY=VALUE")
-        ->allow_extra_args(false);
-}
-
 /// `option VALUE` as a shorthand for `--set key=VALUE`, so that both check and record alike.
 void bind_shorthand(CLI::App& app, std::vector<std::string>& overrides, const std::string& option,
                     const std::string& key, const std::string& type, const std::string& help)
@@ -77,27 +64,6 @@ void bind_shorthand(CLI::App& app, std::vector<std::string>& overrides, const st
            [&overrides, key](const std::string& value) { overrides.push_back(key + "=" + value); },
            help)
         ->type_name(type);
-}
-
-void bind_resolution(CLI::App& app, std::vector<std::string>& overrides)
-{
-    app.add_option_function<std::string>(
-           "--resolution",
-           [&overrides](const std::string& text) {
-               int width = 0;
-               int height = 0;
-               int used = 0;
-               if (std::sscanf(text.c_str(), "%5dx%5d%n", &width, &height, &used) != 2 ||
-                   static_cast<size_t>(used) != text.size()) {
-                   throw CLI::ValidationError(
-                       "--resolution",
-                       fmt::format("\"{}\" is not WIDTHxHEIGHT, e.g. 1920x1080", printable(text)));
-               }
-               overrides.push_back(fmt::format("render.width={}", width));
-               overrides.push_back(fmt::format("render.height={}", height));
-           },
-           "Image size in pixels, e.g. 1920x1080")
-        ->type_name("WxH");
 }
 
 void bind_render(CLI::App& app, RenderOptions& o, std::vector<std::string>& shorthands)
@@ -257,6 +223,7 @@ struct AllOptions {
     CacheOptions cache;
     SheetOptions sheet;
     CompareOptions compare;
+    BenchOptions bench;
     SchemaOptions schema;
     std::optional<Isa> isa;
     std::vector<std::string> shorthands;  ///< overrides that render options stand for
@@ -281,6 +248,8 @@ void bind_all(CLI::App& app, AllOptions& o)
                o.sheet);
     bind_compare(*app.add_subcommand("compare", "Measure the error of an image against another"),
                  o.compare);
+    bind_bench(*app.add_subcommand("bench", "Measure error against time of several methods"),
+               o.bench);
     app.add_subcommand("schema", "Print the JSON Schema of scene files")
         ->add_flag("--markdown", o.schema.markdown, "Print the tables of scenes/README.md instead");
     app.add_subcommand("version", "Print the version, the build and the libraries");
@@ -357,6 +326,7 @@ CommandLine chosen_command(const CLI::App& app, AllOptions& o)
     }
     if (name == "sheet") return std::move(o.sheet);
     if (name == "compare") return std::move(o.compare);
+    if (name == "bench") return std::move(o.bench);
     if (name == "schema") return o.schema;
     return VersionOptions{};
 }

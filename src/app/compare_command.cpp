@@ -7,12 +7,11 @@
 #include "app/commands.h"
 #include "app/compare_report.h"
 #include "app/compare_threshold.h"
+#include "app/text_file.h"
 #include "core/error.h"
 #include "core/file_name.h"
 #include "core/text.h"
-#include "image/atomic_file.h"
 #include "image/exr.h"
-#include "image/output_file.h"
 #include "image/png.h"
 #include "verify/compare_images.h"
 #include "verify/difference_image.h"
@@ -20,18 +19,6 @@
 namespace mote {
 
 namespace {
-
-std::vector<std::string> split_list(const std::string& list)
-{
-    std::vector<std::string> names;
-    size_t begin = 0;
-    while (begin <= list.size()) {
-        const size_t end = std::min(list.find(',', begin), list.size());
-        if (end > begin) names.push_back(list.substr(begin, end - begin));
-        begin = end + 1;
-    }
-    return names;
-}
 
 /// The channels R, G and B of a PNG, linear.
 LayeredImage layers_of_png(const std::string& path)
@@ -86,15 +73,6 @@ std::string write_difference(const std::string& path, const LayeredImage& tested
         printable(path, 1000), printable(layer.name), 100.0 * full_scale);
 }
 
-void write_text(const std::string& path, const std::string& text)
-{
-    write_atomically(path, [&](const std::string& temporary_path) {
-        OutputFile file(temporary_path, path);
-        file.write(text.data(), text.size());
-        file.finish();
-    });
-}
-
 }  // namespace
 
 void run_compare(const CompareOptions& options)
@@ -115,7 +93,7 @@ void run_compare(const CompareOptions& options)
     if (!options.difference.empty()) {
         fmt::print("{}", write_difference(options.difference, tested, reference, layers));
     }
-    if (!options.json.empty()) write_text(options.json, compare_json(report));
+    if (!options.json.empty()) write_text_file(options.json, compare_json(report));
     if (!violations.empty()) {
         throw Error(ExitCode::BiasFound,
                     fmt::format("over the threshold: {}", fmt::join(violations, "; ")));

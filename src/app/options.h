@@ -92,6 +92,29 @@ struct CompareOptions {
     LogOptions log;
 };
 
+struct BenchOptions {
+    std::vector<std::string> inputs;      ///< scenes; with `against`, one results file
+    std::vector<std::string> overrides;   ///< as for render
+    std::vector<std::string> resolution;  ///< overrides that --resolution stands for
+    std::string modes;                    ///< by comma; empty: by what moves in the scene
+    std::string methods;                  ///< by comma; empty: those worthwhile for the scene
+    std::string reference;                ///< method; empty: the best path tracer
+    std::optional<int> frame;
+    std::optional<std::string> frames;  ///< "WARM-UP+MEASURED"
+    std::optional<int> runs;
+    int samples = 0;              ///< 0: equal times
+    double time_budget = 0.0;     ///< [s] per scene; 0: none
+    double reference_time = 0.0;  ///< [s]; 0: that of all runs
+    int seed = 1;
+    int threads = 1;
+    bool quick = false;
+    bool list = false;    ///< print the methods and be done
+    std::string json;     ///< file; empty: none
+    std::string csv;      ///< file; empty: none
+    std::string against;  ///< results file; empty: measure
+    LogOptions log;
+};
+
 struct SchemaOptions {
     bool markdown = false;
 };
@@ -103,7 +126,8 @@ struct PrintText {
     std::string text;
 };
 
-using CommandLine = std::variant<PrintText, RenderOptions, CheckOptions, InfoOptions, CacheOptions,
-                                 SheetOptions, CompareOptions, SchemaOptions, VersionOptions>;
+using CommandLine =
+    std::variant<PrintText, RenderOptions, CheckOptions, InfoOptions, CacheOptions, SheetOptions,
+                 CompareOptions, BenchOptions, SchemaOptions, VersionOptions>;
 
 }  // namespace mote

@@ -5,8 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/image_metadata.h"
-#include "image/atomic_file.h"
-#include "image/output_file.h"
+#include "app/text_file.h"
 
 namespace mote {
 
@@ -87,12 +86,7 @@ void write_run_stats(const std::string& path, const SceneDescription& scene, int
                  {"threads", threads},
                  {"finished", finished},
                  {"frames", std::move(frames)}};
-    const std::string text = j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-    write_atomically(path, [&](const std::string& temporary_path) {
-        OutputFile file(temporary_path, path);
-        file.write(text.data(), text.size());
-        file.finish();
-    });
+    write_text_file(path, j.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace mote

@@ -68,4 +68,15 @@ std::string format_bytes(double bytes)
                      : fmt::format("{:.1f} {}", bytes, units[unit]);
 }
 
+std::vector<std::string> split_list(std::string_view list)
+{
+    std::vector<std::string> entries;
+    for (size_t begin = 0; begin < list.size();) {
+        const size_t end = std::min(list.find(',', begin), list.size());
+        if (end > begin) entries.emplace_back(list.substr(begin, end - begin));
+        begin = end + 1;
+    }
+    return entries;
+}
+
 }  // namespace mote

@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace mote {
 
@@ -16,5 +17,8 @@ namespace mote {
 
 /// "1.5 GB" from a byte count.
 [[nodiscard]] std::string format_bytes(double bytes);
+
+/// The entries of a list by comma, in order; empty entries are dropped.
+[[nodiscard]] std::vector<std::string> split_list(std::string_view list);
 
 }  // namespace mote

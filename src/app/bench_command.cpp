@@ -1,0 +1,106 @@
+#include <iterator>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "app/bench_options.h"
+#include "app/commands.h"
+#include "app/frame_files.h"
+#include "app/signals.h"
+#include "app/text_file.h"
+#include "bench/methods.h"
+#include "bench/report.h"
+#include "bench/result_changes.h"
+#include "core/error.h"
+#include "core/parallel.h"
+#include "scene/scene_io.h"
+
+namespace mote {
+
+namespace {
+
+constexpr const char* quick_size[] = {"render.width=160", "render.height=90"};
+
+SceneDescription load_bench_scene(const std::string& path, const BenchOptions& options)
+{
+    std::vector<std::string> overrides;
+    if (options.quick) overrides.assign(std::begin(quick_size), std::end(quick_size));
+    overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
+    overrides.insert(overrides.end(), options.resolution.begin(), options.resolution.end());
+    return load_scene(path, overrides);
+}
+
+void print_methods()
+{
+    for (const Method& method : all_methods()) fmt::print("{:<22}{}\n", method.name, method.doc);
+}
+
+/// Written after every scene: a long benchmark that is stopped keeps what it has.
+void write_results(const BenchOptions& options, const BenchReport& report)
+{
+    if (!options.json.empty()) write_text_file(options.json, bench_json(report));
+    if (!options.csv.empty()) write_text_file(options.csv, bench_csv(report));
+}
+
+void measure(const BenchOptions& options)
+{
+    const StopSignals signals;
+    const BenchParams params = bench_params(options);
+    // Wrong names and scenes come to light before anything is measured.
+    (void)choose_methods(params.methods, {});
+    if (!params.reference.empty()) (void)find_method(params.reference);
+    std::vector<SceneDescription> scenes;
+    for (const std::string& path : options.inputs) {
+        scenes.push_back(load_bench_scene(path, options));
+        (void)choose_modes(params.modes, scenes.back());
+    }
+    if (!options.json.empty()) require_writable_folder(options.json);
+    if (!options.csv.empty()) require_writable_folder(options.csv);
+
+    const BenchHooks hooks{stop_requested, [](const std::string& line) { spdlog::info(line); }};
+    BenchReport report{MOTE_VERSION, MOTE_ARCH " " MOTE_BUILD_TYPE, options.threads, {}};
+    run_with_threads(options.threads, [&] {
+        for (const SceneDescription& scene : scenes) {
+            report.scenes.push_back(bench_scene(scene, params, hooks));
+            fmt::print("{}{}", report.scenes.size() > 1 ? "\n" : "",
+                       bench_table(report.scenes.back()));
+            std::fflush(stdout);
+            write_results(options, report);
+        }
+    });
+    fmt::print("{}", bench_legend());
+}
+
+void compare_results(const BenchOptions& options)
+{
+    if (options.inputs.size() != 1) {
+        throw Error(ExitCode::Usage, "--against compares two results files: name one before it");
+    }
+    const auto read = [](const std::string& path) {
+        return parse_bench_json(read_text_file(path), path);
+    };
+    const std::vector<RowChange> changes =
+        find_changes(read(options.against), read(options.inputs.front()));
+    if (changes.empty()) {
+        throw Error(ExitCode::Input,
+                    "the files have no scene, size, frame, seed, mode and method in common");
+    }
+    fmt::print("{}", changes_table(changes));
+}
+
+}  // namespace
+
+void run_bench(const BenchOptions& options)
+{
+    if (options.list) {
+        print_methods();
+    } else if (!options.against.empty()) {
+        compare_results(options);
+    } else if (options.inputs.empty()) {
+        throw Error(ExitCode::Usage, "no scene to measure\nTry: mote bench --help");
+    } else {
+        measure(options);
+    }
+}
+
+}  // namespace mote

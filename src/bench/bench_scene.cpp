@@ -1,0 +1,214 @@
+#include "bench/bench_scene.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "bench/pilot.h"
+#include "bench/play_run.h"
+#include "core/error.h"
+#include "core/text.h"
+
+namespace mote {
+
+namespace {
+
+/// The reference's runs have seeds of their own, so that errors are independent of it.
+constexpr uint32_t reference_seed = 0x50000000u;
+/// Enough to know the reference's noise in every pixel.
+constexpr int reference_runs = 8;
+constexpr int fewest_runs = 2;
+/// Of a time budget; the rest is for the reference image.
+constexpr double runs_share = 0.5;
+
+double now()
+{
+    const auto time = std::chrono::steady_clock::now().time_since_epoch();
+    return std::chrono::duration<double>(time).count();
+}
+
+/// The benchmark of one scene while it runs.
+struct Bench {
+    const SceneDescription& scene;
+    const BenchParams& params;
+    const BenchHooks& hooks;
+    int frame = 0;
+    std::vector<BenchMode> modes;
+    std::vector<FramePlan> plans;  ///< of each mode
+    std::vector<Method> methods;
+    std::vector<Pilot> pilots;
+    std::vector<int> samples;  ///< of each method
+    PixelStats reference;
+
+    void say(const std::string& line) const
+    {
+        if (hooks.say) hooks.say(line);
+    }
+    /// The frame compared, alone.
+    [[nodiscard]] FramePlan last_frame() const { return {{plans.front().frames.back()}, 1}; }
+};
+
+int frames_rendered(const FramePlan& plan, const Method& method)
+{
+    return method.keeps_history ? static_cast<int>(plan.frames.size()) : plan.measured;
+}
+
+/// CPU time of one run of every method in one mode, by the pilots.
+double round_seconds(const Bench& bench, const FramePlan& plan)
+{
+    double seconds = 0.0;
+    for (size_t i = 0; i < bench.methods.size(); ++i) {
+        seconds += frames_rendered(plan, bench.methods[i]) * bench.samples[i] *
+                   bench.pilots[i].sample_seconds;
+    }
+    return seconds;
+}
+
+RenderDescription settings_of(const Bench& bench, const Method& method, int samples, uint32_t seed)
+{
+    RenderDescription render = bench.scene.render;
+    method.edit(render);
+    render.samples = samples;
+    render.seed = seed;
+    return render;
+}
+
+RunFigures figures_of(const PlayedRun& run, const PixelStats& reference)
+{
+    const double scale = 1e6 / static_cast<double>(run.image.size());
+    return {measure_error(run.image, reference), scale * run.cpu_seconds,
+            scale * run.cache_cpu_seconds, scale * run.wall_seconds};
+}
+
+/// Renders the reference image, for about `seconds` of CPU time.
+ReferenceInfo render_reference(Bench& bench, double seconds)
+{
+    const FramePlan last = bench.last_frame();
+    Method method;
+    Pilot pilot;
+    const int best = best_reference_row(bench.methods, bench.pilots);
+    if (bench.params.reference.empty() && best >= 0) {
+        method = bench.methods[static_cast<size_t>(best)];
+        pilot = bench.pilots[static_cast<size_t>(best)];
+    } else {
+        const bool named = !bench.params.reference.empty();
+        method = find_method(named ? bench.params.reference : all_methods().front().name);
+        pilot = run_pilot(last, method, bench.scene.render, bench.hooks.stop);
+    }
+    const double samples = seconds / (reference_runs * pilot.sample_seconds);
+    ReferenceInfo info;
+    info.method = method.name;
+    info.runs = reference_runs;
+    info.samples = static_cast<int>(std::clamp(std::round(samples), 1.0, 1e7));
+    bench.say(fmt::format(
+        "reference image: {}, {} x {} samples per pixel, about {:.0f} s of CPU time", method.name,
+        info.runs, info.samples, info.runs * info.samples * pilot.sample_seconds));
+    for (uint32_t k = 0; k < reference_runs; ++k) {
+        const RenderDescription render =
+            settings_of(bench, method, info.samples, reference_seed + bench.params.seed + k);
+        add_run(bench.reference,
+                play_run(last, method.keeps_history, render, bench.hooks.stop).image);
+    }
+    info.mean = bench.reference.image_means.mean;
+    if (!(std::abs(info.mean) > 0.0)) {
+        throw Error(ExitCode::Input, fmt::format("{}: the picture is black: nothing to measure",
+                                                 printable(bench.scene.path, 1000)));
+    }
+    info.relative_error = bench.reference.image_means.standard_error() / std::abs(info.mean);
+    info.noise = reference_noise(bench.reference);
+    return info;
+}
+
+/// Runs all methods in turns; fewer rounds than asked for once `seconds` have passed (0: no limit).
+ModeResult run_mode(const Bench& bench, size_t mode_index, int rounds, double seconds)
+{
+    const BenchMode mode = bench.modes[mode_index];
+    const FramePlan& plan = bench.plans[mode_index];
+    ModeResult result;
+    result.mode = mode;
+    for (size_t i = 0; i < bench.methods.size(); ++i) {
+        MethodResult row;
+        row.name = bench.methods[i].name;
+        row.is_reference = bench.methods[i].is_reference;
+        row.samples = bench.samples[i];
+        row.frames = frames_rendered(plan, bench.methods[i]);
+        result.rows.push_back(std::move(row));
+    }
+    std::vector<PixelStats> tested(bench.methods.size());
+    const double start = now();
+    for (int round = 0; round < rounds; ++round) {
+        const double elapsed = now() - start;
+        if (seconds > 0.0 && round >= fewest_runs && elapsed * (round + 1) > seconds * round) break;
+        bench.say(fmt::format("{}: run {} of {}", mode_name(mode), round + 1, rounds));
+        for (size_t i = 0; i < bench.methods.size(); ++i) {
+            const Method& method = bench.methods[i];
+            const uint32_t seed = bench.params.seed + static_cast<uint32_t>(round);
+            const PlayedRun run =
+                play_run(plan, method.keeps_history,
+                         settings_of(bench, method, bench.samples[i], seed), bench.hooks.stop);
+            result.rows[i].non_finite += run.non_finite;
+            result.rows[i].runs.push_back(figures_of(run, bench.reference));
+            add_run(tested[i], run.image);
+        }
+    }
+    for (size_t i = 0; i < tested.size(); ++i) {
+        result.rows[i].figures = summarize(result.rows[i].runs, tested[i], bench.reference);
+    }
+    rate_rows(result.rows);
+    return result;
+}
+
+/// Makes the frames, and chooses methods and their samples from short runs.
+void prepare(Bench& bench)
+{
+    SceneCache cache;
+    for (const BenchMode mode : bench.modes) {
+        bench.plans.push_back(
+            plan_frames(bench.scene, mode, bench.frame, bench.params.frames, cache));
+    }
+    const FramePlan plan = bench.last_frame();
+    bench.methods = choose_methods(bench.params.methods, traits_of(plan.frames.back()));
+    bench.say(fmt::format("short runs of {} methods", bench.methods.size()));
+    for (const Method& method : bench.methods) {
+        bench.pilots.push_back(run_pilot(plan, method, bench.scene.render, bench.hooks.stop));
+    }
+    bench.samples = equal_time_samples(bench.methods, bench.pilots, bench.params.samples);
+}
+
+}  // namespace
+
+SceneResult bench_scene(const SceneDescription& scene, const BenchParams& params,
+                        const BenchHooks& hooks)
+{
+    const double start = now();
+    Bench bench{scene, params, hooks, 0, {}, {}, {}, {}, {}, {}};
+    bench.frame = params.frame.value_or(scene.first_frame + params.frames.warm_up);
+    bench.modes = choose_modes(params.modes, scene);
+    prepare(bench);
+
+    double round = 0.0;
+    for (const FramePlan& plan : bench.plans) round += round_seconds(bench, plan);
+    const double left = std::max(params.time_budget - (now() - start), 0.0);
+    int rounds = params.runs;
+    double reference_seconds = params.runs * round;
+    if (params.time_budget > 0.0) {
+        const double fitting = std::floor(runs_share * left / round);
+        rounds = static_cast<int>(std::clamp(fitting, double{fewest_runs}, double(params.runs)));
+        reference_seconds = (1.0 - runs_share) * left;
+    }
+    if (params.reference_time > 0.0) reference_seconds = params.reference_time;
+
+    SceneResult result{
+        scene.path,  scene.name, scene.hash, scene.render.width, scene.render.height, bench.frame,
+        params.seed, {},         {}};
+    result.reference = render_reference(bench, reference_seconds);
+    const double share = runs_share * left / static_cast<double>(bench.modes.size());
+    for (size_t i = 0; i < bench.modes.size(); ++i) {
+        result.modes.push_back(run_mode(bench, i, rounds, share));
+    }
+    return result;
+}
+
+}  // namespace mote

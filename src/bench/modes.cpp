@@ -1,0 +1,97 @@
+#include "bench/modes.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+#include "core/text.h"
+
+namespace mote {
+
+namespace {
+
+constexpr ModeInfo table[] = {
+    {BenchMode::Still, "still", "the mean of several frames, nothing moves"},
+    {BenchMode::Static, "static", "one frame after warm-up frames, nothing moves"},
+    {BenchMode::Moving, "moving", "one frame of the animation, after the frames before it"},
+};
+
+BenchMode find_mode(const std::string& name)
+{
+    std::vector<std::string> known;
+    for (const ModeInfo& info : table) {
+        if (name == info.name) return info.mode;
+        known.emplace_back(info.name);
+    }
+    throw Error(ExitCode::Usage, fmt::format("no mode \"{}\"{}; the modes are {}", printable(name),
+                                             did_you_mean(name, known), fmt::join(known, ", ")));
+}
+
+/// Whether a .vdb or particle sequence has more than one file.
+bool is_sequence(const std::optional<SequenceParams>& file)
+{
+    return file && file->pattern.find_first_of("#%$") != std::string::npos;
+}
+
+}  // namespace
+
+std::span<const ModeInfo> mode_table()
+{
+    return table;
+}
+
+const char* mode_name(BenchMode mode)
+{
+    return table[static_cast<size_t>(mode)].name;
+}
+
+bool is_animated(const SceneDescription& scene)
+{
+    if (scene.camera.keys.size() > 1 || !scene.particles.empty()) return true;
+    const bool volumes_move =
+        std::any_of(scene.volumes.begin(), scene.volumes.end(), [](const VolumeDescription& v) {
+            return v.transform.size() > 1 || is_sequence(v.file) ||
+                   (v.procedural && v.procedural->evolve != 0.0f);
+        });
+    const bool lights_move =
+        std::any_of(scene.lights.begin(), scene.lights.end(),
+                    [](const LightDescription& light) { return light.transform.size() > 1; });
+    return volumes_move || lights_move;
+}
+
+std::vector<BenchMode> choose_modes(const std::string& list, const SceneDescription& scene)
+{
+    std::vector<BenchMode> modes;
+    for (const std::string& name : split_list(list)) {
+        const BenchMode mode = find_mode(name);
+        if (std::find(modes.begin(), modes.end(), mode) == modes.end()) modes.push_back(mode);
+    }
+    if (!modes.empty()) return modes;
+    if (is_animated(scene)) return {BenchMode::Moving};
+    return {BenchMode::Still, BenchMode::Static};
+}
+
+FramePlan plan_frames(const SceneDescription& scene, BenchMode mode, int frame,
+                      const FrameCounts& counts, SceneCache& cache)
+{
+    FramePlan plan;
+    plan.measured = mode == BenchMode::Still ? counts.measured : 1;
+    const int frame_count = mode == BenchMode::Still ? counts.measured : counts.warm_up + 1;
+    PrepareNeeds needs;
+    needs.velocity = mode == BenchMode::Moving;
+    needs.velocity_may_be_missing = true;
+    PrepareStats ignored;
+    const auto prepare = [&](int number) {
+        return prepare_frame(scene, number, needs, cache, ignored);
+    };
+    const Scene last = prepare(frame);
+    for (int number = frame - frame_count + 1; number < frame; ++number) {
+        plan.frames.push_back(mode == BenchMode::Moving ? prepare(number) : last);
+        plan.frames.back().frame = number;
+    }
+    plan.frames.push_back(last);
+    return plan;
+}
+
+}  // namespace mote

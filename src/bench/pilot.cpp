@@ -1,0 +1,79 @@
+#include "bench/pilot.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "bench/pixel_stats.h"
+#include "bench/run_error.h"
+#include "bench/trimmed_mean.h"
+
+namespace mote {
+
+namespace {
+
+/// Seeds that neither runs nor reference use.
+constexpr uint32_t pilot_seed = 0xA0000000u;
+
+constexpr int slowest_row_samples = 4;
+constexpr double most_samples = 1e6;
+
+}  // namespace
+
+Pilot run_pilot(const FramePlan& plan, const Method& method, const RenderDescription& render,
+                StopRequested stop)
+{
+    RenderDescription edited = render;
+    method.edit(edited);
+    edited.samples = std::max(method.samples_per_frame, 1);
+    PixelStats stats;
+    double seconds = 0.0;
+    for (uint32_t k = 0; k < 2; ++k) {
+        edited.seed = pilot_seed + k;
+        const PlayedRun run = play_run(plan, method.keeps_history, edited, stop);
+        add_run(stats, run.image);
+        const double without_caches = run.cpu_seconds - run.cache_cpu_seconds;
+        // Others on the machine only ever make it slower.
+        seconds = k == 0 ? without_caches : std::min(seconds, without_caches);
+    }
+    Pilot pilot;
+    pilot.sample_seconds = std::max(seconds, 1e-9) / edited.samples;
+    pilot.sample_variance = trimmed_mean_variance(stats, trimmed_share) * edited.samples;
+    return pilot;
+}
+
+std::vector<int> equal_time_samples(const std::vector<Method>& methods,
+                                    const std::vector<Pilot>& pilots, int samples)
+{
+    std::vector<double> own_times;
+    double slowest = 0.0;
+    for (size_t i = 0; i < methods.size(); ++i) {
+        slowest = std::max(slowest, pilots[i].sample_seconds);
+        if (methods[i].samples_per_frame == 0) continue;
+        own_times.push_back(methods[i].samples_per_frame * pilots[i].sample_seconds);
+    }
+    const double target = own_times.empty() ? slowest_row_samples * slowest : median(own_times);
+    std::vector<int> result;
+    for (size_t i = 0; i < methods.size(); ++i) {
+        const double matched = std::round(target / pilots[i].sample_seconds);
+        const int equal_time = static_cast<int>(std::clamp(matched, 1.0, most_samples));
+        const int own = methods[i].samples_per_frame;
+        result.push_back(own > 0 ? own : (samples > 0 ? samples : equal_time));
+    }
+    return result;
+}
+
+int best_reference_row(const std::vector<Method>& methods, const std::vector<Pilot>& pilots)
+{
+    int best = -1;
+    double least = 0.0;
+    for (size_t i = 0; i < methods.size(); ++i) {
+        if (!methods[i].is_reference) continue;
+        const double cost = pilots[i].sample_variance * pilots[i].sample_seconds;
+        if (best >= 0 && !(cost < least)) continue;
+        best = static_cast<int>(i);
+        least = cost;
+    }
+    return best;
+}
+
+}  // namespace mote

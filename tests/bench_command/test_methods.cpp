@@ -1,0 +1,128 @@
+#include <gtest/gtest.h>
+
+#include "bench/methods.h"
+#include "bench/modes.h"
+#include "bench/pilot.h"
+#include "support/expect_error.h"
+
+namespace mote {
+
+namespace {
+
+using Names = std::vector<std::string>;
+
+Names names_of(const std::vector<Method>& methods)
+{
+    Names names;
+    for (const Method& method : methods) names.push_back(method.name);
+    return names;
+}
+
+Method method_of(bool is_reference, int samples)
+{
+    Method method = all_methods().front();
+    method.is_reference = is_reference;
+    method.samples_per_frame = samples;
+    return method;
+}
+
+}  // namespace
+
+TEST(Methods, TheLightsOfTheSceneDecideWhatIsMeasured)
+{
+    EXPECT_EQ(names_of(choose_methods("", {})), (Names{"path", "path-exact"}));
+    const Names one_lamp = names_of(choose_methods("", {false, true}));
+    EXPECT_EQ(one_lamp, (Names{"path", "path-exact", "path-equi", "path-equi-exact"}));
+    const Names many = names_of(choose_methods("", {true, true}));
+    EXPECT_EQ(many.size(), 12u);
+    EXPECT_EQ(many.front(), "path-power");
+}
+
+TEST(Methods, AreChosenByNameAndBeginning)
+{
+    EXPECT_EQ(names_of(choose_methods("path-tree,path,path-tree", {})),
+              (Names{"path-tree", "path"}));
+    EXPECT_EQ(choose_methods("path-tree*", {}).size(), 4u);
+    EXPECT_EQ(choose_methods("*", {}).size(), all_methods().size());
+    expect_error([] { (void)choose_methods("path-tee", {}); }, ExitCode::Usage,
+                 {"path-tee", "did you mean \"path-tree\""});
+    expect_error([] { (void)find_method("path*"); }, ExitCode::Usage, {"no method"});
+}
+
+TEST(Methods, EditTheSettingsTheyAreNamedFor)
+{
+    RenderDescription render;
+    find_method("path-tree-equi-exact").edit(render);
+    EXPECT_EQ(render.path.light_sampler, LightSamplerKind::Tree);
+    EXPECT_TRUE(render.path.equiangular);
+    EXPECT_EQ(render.path.transmittance, TransmittanceKind::Exact);
+    find_method("path-power").edit(render);
+    EXPECT_EQ(render.path.light_sampler, LightSamplerKind::Power);
+    EXPECT_FALSE(render.path.equiangular);
+    EXPECT_EQ(render.path.transmittance, TransmittanceKind::ResidualRatio);
+}
+
+TEST(Methods, RowsTakeEqualTimes)
+{
+    const std::vector<Pilot> pilots{{1.0, 1.0}, {2.0, 1.0}, {0.5, 1.0}};
+    const Method open = method_of(true, 0);
+    // Nobody sets the time: four samples of the slowest row.
+    EXPECT_EQ(equal_time_samples({open, open, open}, pilots, 0), (std::vector<int>{8, 4, 16}));
+    EXPECT_EQ(equal_time_samples({open, open, open}, pilots, 5), (std::vector<int>{5, 5, 5}));
+    // The second row takes 3 x 2 seconds.
+    const Method fixed = method_of(false, 3);
+    EXPECT_EQ(equal_time_samples({open, fixed, open}, pilots, 0), (std::vector<int>{6, 3, 12}));
+    EXPECT_EQ(equal_time_samples({open, fixed, open}, pilots, 5), (std::vector<int>{5, 3, 5}));
+    EXPECT_EQ(equal_time_samples({open}, {{1e-300, 1.0}}, 0).size(), 1u);
+}
+
+TEST(Methods, TheReferenceIsTheBestPathTracer)
+{
+    const std::vector<Pilot> pilots{{1.0, 4.0}, {2.0, 1.0}, {0.1, 0.1}};
+    const Method path = method_of(true, 0);
+    EXPECT_EQ(best_reference_row({path, path, method_of(false, 0)}, pilots), 1);
+    EXPECT_EQ(best_reference_row({method_of(false, 0)}, {{1.0, 1.0}}), -1);
+}
+
+TEST(Modes, FollowWhatMoves)
+{
+    using Modes = std::vector<BenchMode>;
+    SceneDescription scene;
+    EXPECT_EQ(choose_modes("", scene), (Modes{BenchMode::Still, BenchMode::Static}));
+    EXPECT_EQ(choose_modes("moving,still", scene), (Modes{BenchMode::Moving, BenchMode::Still}));
+    expect_error([&] { (void)choose_modes("stil", scene); }, ExitCode::Usage,
+                 {"did you mean \"still\""});
+    scene.volumes.emplace_back().procedural = ProceduralParams{};
+    EXPECT_FALSE(is_animated(scene));
+    scene.volumes.front().procedural->evolve = 1.0f;
+    EXPECT_TRUE(is_animated(scene));
+    EXPECT_EQ(choose_modes("", scene), Modes{BenchMode::Moving});
+}
+
+TEST(Modes, AllShowTheSameFrameLast)
+{
+    SceneDescription scene;
+    ProceduralParams puff;
+    puff.voxel_size = 0.2f;
+    puff.evolve = 1.0f;
+    scene.volumes.emplace_back().procedural = puff;
+    SceneCache cache;
+    const FrameCounts counts{3, 2};
+    const FramePlan still = plan_frames(scene, BenchMode::Still, 10, counts, cache);
+    const FramePlan rest = plan_frames(scene, BenchMode::Static, 10, counts, cache);
+    const FramePlan moving = plan_frames(scene, BenchMode::Moving, 10, counts, cache);
+    EXPECT_EQ(still.frames.size(), 2u);
+    EXPECT_EQ(still.measured, 2);
+    EXPECT_EQ(rest.frames.size(), 4u);
+    EXPECT_EQ(moving.frames.size(), 4u);
+    EXPECT_EQ(moving.measured, 1);
+    const auto grid = [](const Scene& s) { return s.media.volumes.front().density.get(); };
+    EXPECT_EQ(grid(rest.frames.front()), grid(rest.frames.back()));
+    EXPECT_NE(grid(moving.frames.front()), grid(moving.frames.back()));
+    for (const FramePlan* plan : {&still, &rest, &moving}) {
+        EXPECT_EQ(plan->frames.back().frame, 10);
+        EXPECT_EQ(plan->frames.front().frame, 11 - static_cast<int>(plan->frames.size()));
+    }
+}
+
+}  // namespace mote
