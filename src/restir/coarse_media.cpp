@@ -39,7 +39,7 @@ void gather(const BrickGrid& grid, Vec3i first, float* out)
                 const int count = std::min(bz + 7, last.z) - z0 + 1;
                 for (int x = std::max(bx, first.x); x <= std::min(bx + 7, last.x); ++x) {
                     for (int y = std::max(by, first.y); y <= std::min(by + 7, last.y); ++y) {
-                        const int row = (x - first.x) * fine_edge + (y - first.y);
+                        const ptrdiff_t row = (x - first.x) * fine_edge + (y - first.y);
                         std::copy_n(grid.corner(brick, x - bx, y - by, z0 - bz), count,
                                     out + row * fine_edge + (z0 - first.z));
                     }
@@ -54,7 +54,7 @@ void halve_axis(const float* in, int outer, int inner, float* out)
 {
     for (int o = 0; o < outer; ++o) {
         for (int c = 0; c < coarse_edge; ++c) {
-            const float* row = in + (o * fine_edge + 2 * c) * inner;
+            const float* row = in + ptrdiff_t{o * fine_edge + 2 * c} * inner;
             for (int i = 0; i < inner; ++i) {
                 *out++ = 0.25f * (row[i] + row[i + 2 * inner]) + 0.5f * row[i + inner];
             }

@@ -27,8 +27,8 @@ class EnvironmentCache {
     EnvironmentCache(std::shared_ptr<const DirectionTransmittance> transmittance,
                      std::vector<Spectrum> radiance, const Media& media, Vec3 camera_position);
 
-    /// Moves the camera. Cost: per active node, direction and distinct phase function 4 ns, for
-    /// narrow ones 10 ns.
+    /// Moves the camera. Cost: per active node, direction and distinct phase function 3 ns, for
+    /// narrow ones 15 ns; memory 4 bytes, for narrow ones 12.
     void bake(Vec3 camera_position);
 
     /// Number of a volume's phase function, for the calls below; equal ones share a number.

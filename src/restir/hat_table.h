@@ -8,17 +8,19 @@ namespace mote {
 /// of the time. Never where hats must integrate exactly.
 class HatTable {
   public:
-    explicit HatTable(const DirectionHats& hats) : weights_(edge * edge)
+    explicit HatTable(const DirectionHats& hats) : weights_(size_t{edge} * edge)
     {
-        for (int i = 0; i < edge * edge; ++i) {
-            const float x = (static_cast<float>(i % edge) + 0.5f) * (2.0f / edge) - 1.0f;
-            const float y = (static_cast<float>(i / edge) + 0.5f) * (2.0f / edge) - 1.0f;
+        for (size_t i = 0; i < weights_.size(); ++i) {
+            const size_t column = i % edge;
+            const size_t line = i / edge;
+            const float x = (static_cast<float>(column) + 0.5f) * (2.0f / edge) - 1.0f;
+            const float y = (static_cast<float>(line) + 0.5f) * (2.0f / edge) - 1.0f;
             Vec3 w(x, y, 1.0f - std::abs(x) - std::abs(y));
             if (w.z < 0.0f) {
                 w.x = std::copysign(1.0f - std::abs(y), x);
                 w.y = std::copysign(1.0f - std::abs(x), y);
             }
-            weights_[static_cast<size_t>(i)] = hats.at(glm::normalize(w));
+            weights_[i] = hats.at(glm::normalize(w));
         }
     }
 
@@ -34,16 +36,16 @@ class HatTable {
             y = std::copysign(1.0f - std::abs(x), y);
             x = fold;
         }
-        return weights_[static_cast<size_t>(cell(y) * edge + cell(x))];
+        return weights_[cell(y) * edge + cell(x)];
     }
 
   private:
     static constexpr int edge = 64;
 
-    static int cell(float x)
+    static size_t cell(float x)
     {
         const float position = (0.5f * x + 0.5f) * edge;
-        return static_cast<int>(std::min(std::max(0.0f, position), edge - 1.0f));
+        return static_cast<size_t>(std::min(std::max(0.0f, position), edge - 1.0f));
     }
 
     std::vector<DirectionHats::Weights> weights_;

@@ -110,7 +110,7 @@ RayLattice lattice_for(const OrientedBox& box, Vec3d w, double spacing)
 RayLattice lattice_within(int64_t budget, const OrientedBox& box, Vec3d w, double& spacing)
 {
     for (;;) {
-        const RayLattice lattice = lattice_for(box, w, spacing);
+        RayLattice lattice = lattice_for(box, w, spacing);
         const double excess = static_cast<double>(lattice.nodes()) /
                               static_cast<double>(std::max<int64_t>(budget, 18));
         if (excess <= 1.0) return lattice;
@@ -231,8 +231,8 @@ TransmittanceMap::TransmittanceMap(const Media& media, Vec3 wi,
     const size_t rays = columns * static_cast<size_t>(lattice.count.y);
     parallel_for(rays, 32, [&](size_t begin, size_t end) {
         for (size_t n = begin; n < end; ++n) {
-            const Vec3d node(static_cast<double>(n % columns), static_cast<double>(n / columns),
-                             0.0);
+            const size_t line = n / columns;
+            const Vec3d node(static_cast<double>(n % columns), static_cast<double>(line), 0.0);
             const Vec3d q = box_from_lattice * (node - lattice.offset);
             const Ray ray{Vec3(box->centre + box->axes * q), -wi / length, cache_time};
             for (const Walked& one : walked) {
