@@ -30,8 +30,9 @@ struct LightCellsParams {
 /// never bias, since every light keeps a probability above 0 everywhere and all are known exactly.
 ///
 /// Each cell divides all lights into at most most_clusters ranges of one spatial order, near lights
-/// singly and far ones together (a light cut), and holds their distribution; within a range lights
-/// are chosen by power. Outside the smoke lights are chosen by power alone.
+/// singly and far ones together (a light cut), and holds their distribution; within a range, a walk
+/// down the tree of lights chooses by power and distance from x. Outside the smoke that walk starts
+/// at the root. Cost of a choice: 0.06 us among 100 lights, 0.1 among 1000, 0.5 among a million.
 class LightCells {
   public:
     LightCells() = default;
@@ -108,7 +109,7 @@ class LightCells {
     Lattice lattice_;
     std::vector<int32_t> cell_at_;  ///< per lattice position; -1: none
     std::vector<float> inscatter_;  ///< per lattice position, at the cell's centre
-    float least_inscatter_ = 1.0f;
+    float least_inscatter_ = 1e-20f;
     std::vector<Cell> cells_;
     std::vector<Cut> cuts_;
     std::vector<int> nodes_;      ///< of all cuts, into clusters_.nodes
