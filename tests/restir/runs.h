@@ -5,7 +5,7 @@
 
 #include "render/film.h"
 #include "render/restir_frame.h"
-#include "restir/scenes.h"
+#include "restir/domains.h"
 #include "verify/tiles.h"
 
 namespace mote::test {
@@ -65,12 +65,6 @@ inline TileStats reference_runs(const TestScene& test, const Effort& effort)
 {
     return render_runs(test, description(test, EstimatorKind::Path, effort.reference_samples),
                        effort.runs, 100'000);
-}
-
-/// For scenes that outlive everything that is made of them.
-inline std::shared_ptr<const Scene> borrow(const Scene& scene)
-{
-    return {std::shared_ptr<const Scene>(), &scene};
 }
 
 /// Runs of the passes alone, with caches of the caller's.
