@@ -159,15 +159,16 @@ SampledChoice choose_light(const FrameDomain& frame, Vec3 x, Vec3 wo, float u)
 float light_pmf(const FrameDomain& frame, int light, Vec3 x, Vec3 wo)
 {
     const bool infinite = is_infinite(frame.lights[static_cast<size_t>(light)]);
+    int index = 0;
+    if (infinite) {
+        const auto found = std::find(frame.infinite.begin(), frame.infinite.end(), light);
+        if (found == frame.infinite.end()) return 0.0f;
+        index = static_cast<int>(found - frame.infinite.begin()) + (frame.samples_local ? 1 : 0);
+    } else if (!frame.samples_local) {
+        return 0.0f;
+    }
     float pmf = 1.0f;
     if (!frame.infinite.empty()) {
-        int index = 0;
-        if (infinite) {
-            const auto found = std::find(frame.infinite.begin(), frame.infinite.end(), light);
-            if (found == frame.infinite.end()) return 0.0f;
-            index =
-                static_cast<int>(found - frame.infinite.begin()) + (frame.samples_local ? 1 : 0);
-        }
         pmf = class_pmf(frame, make_classes(frame, x, wo), index, x, wo);
     }
     return infinite ? pmf : pmf * frame.caches->cells->pmf(light, x);
