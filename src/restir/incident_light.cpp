@@ -135,19 +135,19 @@ float sampled_inscatter(const FrameDomain& frame, Vec3 x, Vec3 wo)
     return sum;
 }
 
-SampledChoice choose_light(const FrameDomain& frame, Vec3 x, Vec3 wo, float u)
+SampledChoice choose_light(const FrameDomain& frame, Vec3 x, Vec3 wo, double u)
 {
     int index = 0;
     float pmf = 1.0f;
     if (!frame.infinite.empty()) {
         const Classes classes = make_classes(frame, x, wo);
-        float before = 0.0f;
+        double before = 0.0;
         for (;; ++index) {
             pmf = class_pmf(frame, classes, index, x, wo);
-            if (u < before + pmf || index + 1 == classes.count) break;
-            before += pmf;
+            if (u < before + static_cast<double>(pmf) || index + 1 == classes.count) break;
+            before += static_cast<double>(pmf);
         }
-        u = std::clamp((u - before) / pmf, 0.0f, one_minus_epsilon);
+        u = std::clamp((u - before) / static_cast<double>(pmf), 0.0, 1.0 - 0x1p-53);
     }
     if (frame.samples_local && index-- == 0) {
         const LightPick pick = frame.caches->cells->sample(x, u);
