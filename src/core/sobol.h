@@ -52,8 +52,8 @@ class PassSequence {
     [[nodiscard]] Vec2 pair(uint32_t pair) const
     {
         const uint32_t seed = hash_combine(key_, pair);
-        const uint32_t index = owen_scramble(reverse_bits(pass_), hash32(seed ^ 0x68bc21ebu));
-        const uint32_t shuffled = reverse_bits(index);
+        // From the high bits down, so that aligned runs of 2^n passes take aligned runs of points.
+        const uint32_t shuffled = owen_scramble(pass_, hash32(seed ^ 0x68bc21ebu));
         return {to_unit_float(owen_scramble(sobol_x(shuffled), hash32(seed ^ 0x02e5be93u))),
                 to_unit_float(owen_scramble(sobol_y(shuffled), hash32(seed ^ 0x967a889bu)))};
     }

@@ -130,6 +130,10 @@ void begin_pass(const PassInputs& inputs, const PassKey& key, int owner, PixelDo
     sample.transmittance = std::exp(-depth);
     sample.optical_depth = depth;
     sample.exact_rays = domain.bins.empty() ? 0.0f : 1.0f;
+    if (inputs.aovs.has(Aov::OpticalDepth) && sample.transmittance <= frame.transmittance_cut) {
+        // The bins may end before the media do.
+        sample.optical_depth = optical_depth(scene.media, ray, {0.0f, infinity});
+    }
     sample.background = seen_background(inputs, domain, sample.transmittance);
     if (frame.has_emission) {
         Rng rng = pass_rng(inputs, key, Stream::Shade);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/distribution.h"
 #include "restir/phase_candidates.h"
 #include "scene/environment.h"
 
@@ -72,7 +73,7 @@ void draw_candidates(const FrameDomain& frame, const PixelDomain& domain, int co
     if (!(domain.Z() > 0.0f) || !frame.has_sampled_lights()) return;
     const float time = domain.ray.time;
     const Vec3 wo = domain.wo();
-    const float u_light = rng.uniform();
+    const double u_light = uniform_double(rng);
     for (int i = 0; i < count; ++i) {
         const auto index = static_cast<float>(i);
         Candidate c;
@@ -81,11 +82,11 @@ void draw_candidates(const FrameDomain& frame, const PixelDomain& domain, int co
         if (!(point.weight > 0.0f)) continue;
         c.x = point.x;
 
-        // Golden-ratio steps: few lights per pixel, far apart in the cell's order.
-        float u = u_light + index * 0.6180339887f;
+        // Golden-ratio steps: few lights per pixel, far apart in the cell's order. In double: among
+        // thousands of lamps a float's steps are as large as the share of one.
+        double u = u_light + 0.6180339887498949 * i;
         u -= std::floor(u);
-        const SampledChoice choice =
-            choose_light(frame, point.x, wo, std::min(u, one_minus_epsilon));
+        const SampledChoice choice = choose_light(frame, point.x, wo, u);
         if (choice.light >= 0 && choice.pmf > 0.0f) {
             const SampledLight& light = frame.lights[static_cast<size_t>(choice.light)];
             c.y.light = choice.light;

@@ -153,19 +153,19 @@ float cached_visibility(const FrameDomain& frame, const PathSample& y, Vec3 x,
     return 1.0f;
 }
 
-SampledChoice choose_light(const FrameDomain& frame, Vec3 x, Vec3 wo, float u)
+SampledChoice choose_light(const FrameDomain& frame, Vec3 x, Vec3 wo, double u)
 {
     int index = 0;
     float pmf = 1.0f;
     if (!frame.infinite.empty()) {
         const Classes classes = make_classes(frame, x, wo);
-        float before = 0.0f;
+        double before = 0.0;
         for (;; ++index) {
             pmf = class_pmf(frame, classes, index, x, wo);
-            if (u < before + pmf || index + 1 == classes.count) break;
-            before += pmf;
+            if (u < before + static_cast<double>(pmf) || index + 1 == classes.count) break;
+            before += static_cast<double>(pmf);
         }
-        u = std::clamp((u - before) / pmf, 0.0f, one_minus_epsilon);
+        u = std::clamp((u - before) / static_cast<double>(pmf), 0.0, 1.0 - 0x1p-53);
     }
     if (frame.samples_local && index-- == 0) {
         const LightPick pick = frame.caches->cells->sample(x, u);
@@ -177,15 +177,16 @@ SampledChoice choose_light(const FrameDomain& frame, Vec3 x, Vec3 wo, float u)
 float light_pmf(const FrameDomain& frame, int light, Vec3 x, Vec3 wo)
 {
     const bool infinite = is_infinite(frame.lights[static_cast<size_t>(light)]);
+    int index = 0;
+    if (infinite) {
+        const auto found = std::find(frame.infinite.begin(), frame.infinite.end(), light);
+        if (found == frame.infinite.end()) return 0.0f;
+        index = static_cast<int>(found - frame.infinite.begin()) + (frame.samples_local ? 1 : 0);
+    } else if (!frame.samples_local) {
+        return 0.0f;
+    }
     float pmf = 1.0f;
     if (!frame.infinite.empty()) {
-        int index = 0;
-        if (infinite) {
-            const auto found = std::find(frame.infinite.begin(), frame.infinite.end(), light);
-            if (found == frame.infinite.end()) return 0.0f;
-            index =
-                static_cast<int>(found - frame.infinite.begin()) + (frame.samples_local ? 1 : 0);
-        }
         pmf = class_pmf(frame, make_classes(frame, x, wo), index, x, wo);
     }
     return infinite ? pmf : pmf * frame.caches->cells->pmf(light, x);

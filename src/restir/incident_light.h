@@ -39,8 +39,9 @@ struct SampledChoice {
 };
 
 /// Chooses one of the frame's lights at x about in proportion to what it brings. u in [0,1),
-/// stretched rather than replaced, so that stratified u give stratified lights.
-[[nodiscard]] SampledChoice choose_light(const FrameDomain& frame, Vec3 x, Vec3 wo, float u);
+/// stretched rather than replaced, so that stratified u give stratified lights; with thousands of
+/// them it needs more bits than a float has.
+[[nodiscard]] SampledChoice choose_light(const FrameDomain& frame, Vec3 x, Vec3 wo, double u);
 
 /// Probability of choose_light returning this light; > 0 for every light that shines.
 [[nodiscard]] float light_pmf(const FrameDomain& frame, int light, Vec3 x, Vec3 wo);

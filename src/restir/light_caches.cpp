@@ -115,6 +115,11 @@ std::shared_ptr<const LightCaches> make_light_caches(
 {
     auto out = std::make_shared<LightCaches>();
     out->media = media_key(scene.media);
+    const std::vector<Volume>& volumes = scene.media.volumes;
+    if (std::none_of(volumes.begin(), volumes.end(), has_density)) {
+        out->emissive.resize(volumes.size());
+        return out;
+    }
     const bool same_media = previous && previous->media == out->media;
     const Builder builder{scene, sizes, previous.get(), same_media, *out};
     builder.add_distant();

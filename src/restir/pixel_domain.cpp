@@ -11,6 +11,9 @@ namespace {
 /// Share of the ray's mean in-scattered light that every bin counts with at least: bounds what a
 /// wrong cache can do to the contributions.
 constexpr float weight_floor = 0.05f;
+/// Share of all numbers that is spread evenly over the bins. What they count with by that mean
+/// falls with transmittance, below what floats can tell from nothing.
+constexpr float even_share = 0.01f;
 
 }  // namespace
 
@@ -42,13 +45,21 @@ void weigh_bins(const FrameDomain& frame, PixelDomain& domain)
         near = far;
     }
     // Without light anywhere any distribution will do.
-    const bool known = weighted > 0.0f && std::isfinite(weighted) && lost > 0.0f;
-    const float floor = known ? weight_floor * weighted / lost : 1.0f;
-    domain.cdf[0] = 0.0f;
+    const float mean = weighted / lost;
+    const bool known = mean > 0.0f && std::isfinite(mean);
+    const float floor = known ? weight_floor * mean : 1.0f;
+    float total = 0.0f;
     for (int k = 0; k < bins.count; ++k) {
         const float share = std::exp(-bins.tau[k]) * -std::expm1(-bins.depth_of_bin(k));
         const float own = known && domain.cdf[k + 1] > 0.0f ? domain.cdf[k + 1] : 0.0f;
-        domain.cdf[k + 1] = domain.cdf[k] + own + floor * share;
+        domain.cdf[k + 1] = own + floor * share;
+        total += domain.cdf[k + 1];
+    }
+    const float even = even_share * total / static_cast<float>(bins.count);
+    domain.cdf[0] = 0.0f;
+    for (int k = 0; k < bins.count; ++k) {
+        const float own = bins.depth_of_bin(k) > 0.0f ? domain.cdf[k + 1] + even : 0.0f;
+        domain.cdf[k + 1] = domain.cdf[k] + own;
     }
 }
 

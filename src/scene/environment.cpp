@@ -107,6 +107,7 @@ std::shared_ptr<const EnvironmentMap> make_environment_map(Buffer2D<Spectrum> pi
 Spectrum environment_radiance(const EnvironmentLight& light, Vec3 wi)
 {
     if (!light.map) return light.radiance;
+    if (!is_finite(wi)) return Spectrum(0.0f);
     const Vec2 position = image_position(*light.map, light.map_from_world * wi);
     return light.radiance * bilinear(light.map->pixels, position);
 }
@@ -147,6 +148,7 @@ float environment_pdf(const EnvironmentLight& light, Vec3 wi)
 {
     if (max_component(light.radiance) <= 0.0f) return 0.0f;
     if (!light.map) return sample_sphere_pdf();
+    if (!is_finite(wi)) return 0.0f;
     const EnvironmentMap& map = *light.map;
     const int width = map.pixels.width();
     const int height = map.pixels.height();

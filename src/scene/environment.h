@@ -25,7 +25,8 @@ struct EnvironmentMap {
 [[nodiscard]] std::shared_ptr<const EnvironmentMap> make_environment_map(Buffer2D<Spectrum> pixels,
                                                                          const std::string& name);
 
-/// Radiance [W/(m^2 sr)] arriving from world direction wi [unit].
+/// Radiance [W/(m^2 sr)] arriving from world direction wi [unit]. An image is black towards a wi
+/// that is not finite.
 [[nodiscard]] Spectrum environment_radiance(const EnvironmentLight& light, Vec3 wi);
 
 /// Samples a direction: uniformly for a constant, else in proportion to the image's luminance.

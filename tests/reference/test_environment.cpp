@@ -153,5 +153,14 @@ TEST(Environment, BlackEnvironmentsGiveNoSample)
     EXPECT_FALSE(sample_environment(dark, rng));
 }
 
+TEST(Environment, DirectionsThatAreNotFiniteSeeNothing)
+{
+    const EnvironmentLight light = image_light(test_image(16, 8));
+    for (const float bad : {std::numeric_limits<float>::quiet_NaN(), infinity}) {
+        EXPECT_EQ(environment_radiance(light, Vec3(bad, 0.0f, 0.0f)), Spectrum(0.0f));
+        EXPECT_EQ(environment_pdf(light, Vec3(0.0f, bad, 0.0f)), 0.0f);
+    }
+}
+
 }  // namespace
 }  // namespace mote

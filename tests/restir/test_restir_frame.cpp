@@ -1,0 +1,281 @@
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "core/parallel.h"
+#include "restir/runs.h"
+#include "scene/aov_names.h"
+
+namespace mote {
+namespace {
+
+using test::TestScene;
+
+OutputDescription all_layers()
+{
+    OutputDescription output;
+    output.aovs.assign(aov_names.begin(), aov_names.end());
+    output.color_type = PixelType::Float;
+    return output;
+}
+
+RenderDescription render_of(const TestScene& test, int samples)
+{
+    RenderDescription render = test::description(test, EstimatorKind::Restir, samples);
+    render.seed = 3;
+    return render;
+}
+
+LayeredImage render(const TestScene& test, const RenderDescription& description, FrameStats& stats,
+                    const OutputDescription& output = all_layers())
+{
+    FrameHistory history;
+    return render_frame(test.scene, description, output, history, nullptr, stats);
+}
+
+bool same_bits(const LayeredImage& a, const LayeredImage& b)
+{
+    if (a.channels.size() != b.channels.size() || a.channels.empty()) return false;
+    for (size_t c = 0; c < a.channels.size(); ++c) {
+        const Buffer2D<float>& x = a.channels[c].data;
+        const Buffer2D<float>& y = b.channels[c].data;
+        if (x.size() != y.size()) return false;
+        if (std::memcmp(x.data(), y.data(), x.size() * sizeof(float)) != 0) return false;
+    }
+    return true;
+}
+
+TEST(RestirFrame, BitIdenticalForAnyThreadCount)
+{
+    for (TestScene test : {test::everything_at_once(), test::moving_through_a_lens()}) {
+        test.scene.camera.width = 40;  // six tiles
+        test.scene.camera.height = 20;
+        for (const bool control_variate : {true, false}) {
+            RenderDescription description = render_of(test, 2);
+            description.restir.control_variate = control_variate;
+            LayeredImage first;
+            for (const int threads : {1, 2, 3, 8}) {
+                LayeredImage image;
+                FrameStats stats;
+                run_with_threads(threads, [&] { image = render(test, description, stats); });
+                if (threads == 1) first = image;
+                EXPECT_TRUE(same_bits(first, image)) << test.name << ", " << threads << " threads";
+            }
+        }
+    }
+}
+
+TEST(RestirFrame, SeedsAndFramesChangeTheNoise)
+{
+    TestScene test = test::overlapping();
+    RenderDescription description = render_of(test, 1);
+    FrameStats stats;
+    const LayeredImage first = render(test, description, stats);
+    EXPECT_TRUE(same_bits(first, render(test, description, stats)));
+    description.seed = 4;
+    EXPECT_FALSE(same_bits(first, render(test, description, stats)));
+    description.seed = 3;
+    test.scene.frame = 2;
+    EXPECT_FALSE(same_bits(first, render(test, description, stats)));
+}
+
+TEST(RestirFrame, IsWhatThePassesGiveWithFreshCaches)
+{
+    const TestScene test = test::overlapping();
+    const RenderDescription description = render_of(test, 2);
+    OutputDescription output;
+    output.aovs = test::part_names;
+    output.color_type = PixelType::Float;
+    FrameStats stats;
+    const LayeredImage image = render(test, description, stats, output);
+    const int64_t pixel_passes = int64_t{description.width} * description.height * 2;
+    const TileStats passes = test::runs_with_caches(
+        test, make_light_caches(test.scene, {pixel_passes}, nullptr), description, 1, 3);
+    TileStats frame(4);
+    add_run(frame, image);
+    for (size_t c = 0; c < frame.channels.size(); ++c) {
+        EXPECT_EQ(frame.channels[c].whole_image.mean, passes.channels[c].whole_image.mean);
+    }
+}
+
+/// Mean of a channel, pixels of no depth left out.
+double mean_of(const LayeredImage& image, const std::string& channel)
+{
+    RunningStats stats;
+    for (const float v : image.find(channel)->data) {
+        if (v < background_depth) stats.add(static_cast<double>(v));
+    }
+    return stats.mean;
+}
+
+TEST(RestirFrameStat, DataLayersAreThoseOfThePathTracer)
+{
+    // 3 % of each mean: 5 standard errors of the path tracer's or more; depths vary by the metre.
+    for (const float density : {1.0f, 60.0f}) {
+        const TestScene test = test::sun_and_sky(density);
+        FrameStats stats;
+        const LayeredImage tested = render(test, render_of(test, 200), stats);
+        const LayeredImage truth =
+            render(test, test::description(test, EstimatorKind::Path, 4000), stats);
+        for (const char* name :
+             {"A", "albedo.R", "volume_Z.Z", "transmittance.G", "opticalDepth.Y", "background.B"}) {
+            const double mean = mean_of(truth, name);
+            EXPECT_NEAR(mean_of(tested, name), mean, 0.03 * mean) << name << ", " << density;
+        }
+    }
+}
+
+/// Counters of work on light.
+void expect_idle(const FrameStats& stats, const std::string& what)
+{
+    EXPECT_EQ(stats.light_rays, 0) << what;
+    EXPECT_EQ(stats.candidates, 0) << what;
+    EXPECT_EQ(stats.dropped_non_finite, 0) << what;
+}
+
+TEST(RestirFrame, NothingToDoIsNothingDone)
+{
+    FrameStats stats;
+    TestScene empty = test::sun_and_sky();
+    empty.scene.media.volumes.clear();
+    empty.scene.lights.push_back(PointLight{});
+    LayeredImage image = render(empty, render_of(empty, 2), stats);
+    expect_idle(stats, "no media");
+    EXPECT_EQ(stats.cells, 0);
+    EXPECT_EQ(stats.camera_rays, 0);
+    EXPECT_EQ(mean_of(image, "A"), 0.0);
+    EXPECT_NEAR(mean_of(image, "B"), 0.4, 1e-6);
+
+    stats = {};
+    empty.scene.media.volumes.emplace_back();  // a volume without a grid
+    image = render(empty, render_of(empty, 2), stats);
+    expect_idle(stats, "void");
+    EXPECT_EQ(stats.cells, 0);
+
+    stats = {};
+    TestScene beside = test::everything_at_once();
+    beside.scene.camera = test::small_camera({0.0f, 0.0f, 9.0f});
+    beside.scene.camera.world_from_camera.keys[0].rotate = {0.0, 0.0, 1.0, 0.0};  // looks away
+    (void)render(beside, render_of(beside, 2), stats);
+    expect_idle(stats, "looks away");
+    EXPECT_EQ(stats.cells, 0);
+
+    stats = {};
+    TestScene dark = test::sun_and_sky();
+    dark.scene.lights.clear();
+    dark.scene.environment.reset();
+    image = render(dark, render_of(dark, 2), stats);
+    expect_idle(stats, "no lights");
+    EXPECT_GT(stats.camera_rays, 0);  // alpha still wants to be known
+    EXPECT_EQ(mean_of(image, "R"), 0.0);
+    EXPECT_GT(mean_of(image, "A"), 0.1);
+
+    stats = {};
+    dark.scene.lights = {DistantLight{Vec3(0.0f, 1.0f, 0.0f), Spectrum(0.0f)},
+                         PointLight{Vec3(0.0f), Spectrum(0.0f)}};
+    dark.scene.environment = EnvironmentLight{Spectrum(0.0f), nullptr, Mat3(1.0f)};
+    (void)render(dark, render_of(dark, 2), stats);
+    expect_idle(stats, "black lights");
+
+    stats = {};
+    const TestScene lit = test::everything_at_once();
+    RenderDescription description = render_of(lit, 2);
+    description.path.max_bounces = 0;
+    (void)render(lit, description, stats);
+    expect_idle(stats, "no scattering wanted");
+}
+
+TEST(LightCaches, ThereAreNoneWithoutMediaOrLights)
+{
+    TestScene test = test::everything_at_once();
+    test.scene.media.volumes.clear();
+    EXPECT_EQ(make_light_caches(test.scene, {}, nullptr)->built, 0);
+    test.scene.media.volumes.emplace_back();
+    EXPECT_EQ(make_light_caches(test.scene, {}, nullptr)->built, 0);
+    test = test::sun_and_sky();
+    test.scene.lights.clear();
+    test.scene.environment.reset();
+    EXPECT_EQ(make_light_caches(test.scene, {}, nullptr)->built, 0);
+}
+
+TEST(LightCaches, WhatDidNotChangeIsTakenOver)
+{
+    TestScene test = test::overlapping();  // a sun, an environment, a lamp
+    const auto first = make_light_caches(test.scene, {}, nullptr);
+    EXPECT_EQ(first->built, 3);
+    EXPECT_EQ(first->reused, 0);
+    const auto second = make_light_caches(test.scene, {}, first);
+    EXPECT_EQ(second->built, 0);
+    EXPECT_EQ(second->reused, 3);
+    EXPECT_EQ(second->distant[0].map, first->distant[0].map);
+
+    // Colours and cameras leave them alone.
+    std::get<DistantLight>(test.scene.lights[0]).irradiance *= 2.0f;
+    test.scene.environment->radiance *= 0.5f;
+    test.scene.camera = test::small_camera({2.0f, 0.0f, 2.0f});
+    EXPECT_EQ(make_light_caches(test.scene, {}, first)->reused, 3);
+
+    // The lamp moves, the sun turns, the medium changes.
+    std::get<PointLight>(test.scene.lights[1]).position.x += 0.1f;
+    EXPECT_EQ(make_light_caches(test.scene, {}, first)->built, 1);
+    std::get<DistantLight>(test.scene.lights[0]).direction = {0.0f, 1.0f, 0.0f};
+    EXPECT_EQ(make_light_caches(test.scene, {}, first)->built, 2);
+    test.scene.media.volumes[0].density_scale *= 1.01f;
+    EXPECT_EQ(make_light_caches(test.scene, {}, first)->built, 3);
+    EXPECT_EQ(make_light_caches(test.scene, {}, first)->reused, 0);
+}
+
+TEST(RestirFrame, HistoryKeepsCachesAndChangesNothing)
+{
+    const TestScene test = test::overlapping();
+    const RenderDescription description = render_of(test, 2);
+    FrameHistory history;
+    FrameStats stats;
+    const LayeredImage first =
+        render_frame(test.scene, description, all_layers(), history, nullptr, stats);
+    const LayeredImage second =
+        render_frame(test.scene, description, all_layers(), history, nullptr, stats);
+    EXPECT_TRUE(same_bits(first, second));
+}
+
+TEST(RestirFrame, StopsBetweenPasses)
+{
+    const TestScene test = test::everything_at_once();
+    FrameHistory history;
+    FrameStats stats;
+    const LayeredImage image = render_frame(
+        test.scene, render_of(test, 1'000'000), all_layers(), history, [] { return true; }, stats);
+    EXPECT_TRUE(image.channels.empty());
+}
+
+TEST(RestirFrame, ExtremesStayFinite)
+{
+    for (const float density : {1e-8f, 1e4f, 1e8f}) {
+        for (const float power : {1e-20f, 1e15f}) {
+            for (const float g : {0.999f, -0.999f}) {
+                TestScene test = test::everything_at_once();
+                for (Volume& volume : test.scene.media.volumes) {
+                    volume.density_scale = density;
+                    volume.phase.g = g;
+                    finalize(volume);
+                }
+                test.scene.lights.push_back(PointLight{Vec3(0.05f), Spectrum(power)});
+                test.scene.lights.push_back(SphereLight{Vec3(0.1f), 1e-6f, Spectrum(power)});
+                test.scene.lights.push_back(SphereLight{Vec3(0.0f), 1e6f, Spectrum(power)});
+                for (const bool control_variate : {true, false}) {
+                    RenderDescription description = render_of(test, 2);
+                    description.restir.control_variate = control_variate;
+                    FrameStats stats;
+                    const LayeredImage image = render(test, description, stats);
+                    EXPECT_EQ(stats.dropped_non_finite, 0) << density << " " << power << " " << g;
+                    for (const Channel& c : image.channels) {
+                        for (const float v : c.data) ASSERT_TRUE(std::isfinite(v)) << c.name;
+                    }
+                }
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace mote
