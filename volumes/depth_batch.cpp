@@ -15,7 +15,7 @@ constexpr int round_steps = 4;  ///< of each ray in one round: early stops waste
 constexpr int most_cells = 22;  ///< of one piece: three axes of seven borders, and the start
 static_assert(RayBlock::capacity * round_steps <= PieceList::capacity);
 
-/// Working space of a batch, 250 kB on the stack: allocating it would cost small batches more.
+/// Working space of a batch, 90 kB on the stack: allocating it would cost small batches more.
 struct Workspace {
     RayBlock rays;
     size_t ray_count;

@@ -2,36 +2,12 @@
 
 #include "volumes/brick_steps_simd.h"
 #include "volumes/cell_steps_simd.h"
+#include "volumes/lane_loads_simd.h"
 
 namespace mote {
 namespace {
 
-/// Where the pairs of one lane begin, next to each other in v[0] to v[7] once loaded.
-struct Offsets {
-    int pair[4];
-};
-constexpr Offsets corner_offsets{{0, 9, 81, 90}};
-constexpr Offsets field_offsets{{0, 2, 4, 6}};
-
-/// Two 8-byte pairs of floats as one vector.
-inline __m128 two_pairs(const float* p, const float* q)
-{
-    const __m128d low = _mm_load_sd(reinterpret_cast<const double*>(p));
-    return _mm_castpd_ps(_mm_loadh_pd(low, reinterpret_cast<const double*>(q)));
-}
-
-/// The pairs at each offset, lanes 0, 1 in the low half and 4, 5 in the high one.
-inline void half_pairs(const float* const* p, Offsets offsets, __m256* out)
-{
-    for (int i = 0; i < 4; ++i) {
-        const int at = offsets.pair[i];
-        out[i] = _mm256_insertf128_ps(_mm256_castps128_ps256(two_pairs(p[0] + at, p[1] + at)),
-                                      two_pairs(p[4] + at, p[5] + at), 1);
-    }
-}
-
-/// v[2i], v[2i+1] = first and second float of pair i of eight lanes, in lane order. Eight-byte
-/// loads and shuffles: a gather instruction costs more on the machines measured.
+/// v[2i], v[2i+1] = first and second float of pair i of eight lanes, in lane order.
 inline void load_pairs(const float* const* p, Offsets offsets, __m256* v)
 {
     __m256 even[4];
@@ -60,6 +36,7 @@ struct PackingTable {
 };
 constexpr PackingTable packing_table;
 
+/// Eight lanes.
 struct Lanes {
     using Real = __m256;
     using Int = __m256i;
