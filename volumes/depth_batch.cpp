@@ -32,13 +32,13 @@ struct Workspace {
     size_t piece_count;
 };
 
-/// Stable counting sort: order[] = indices of `keys`, all below key_count, by ascending key.
-template <size_t key_count, class Index>
+/// Stable counting sort: order[] = indices of `keys`, all below KeyCount, by ascending key.
+template <size_t KeyCount, class Index>
 void sort_by_key(std::span<const uint8_t> keys, Index* order)
 {
-    size_t place[key_count + 1] = {};
+    size_t place[KeyCount + 1] = {};
     for (const uint8_t key : keys) ++place[key + 1];
-    for (size_t key = 1; key < key_count; ++key) place[key] += place[key - 1];
+    for (size_t key = 1; key < KeyCount; ++key) place[key] += place[key - 1];
     for (size_t i = 0; i < keys.size(); ++i) order[place[keys[i]]++] = static_cast<Index>(i);
 }
 

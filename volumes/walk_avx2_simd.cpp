@@ -14,7 +14,7 @@ inline void load_pairs(const float* const* p, Offsets offsets, __m256* v)
     __m256 odd[4];
     half_pairs(p, offsets, even);
     half_pairs(p + 2, offsets, odd);
-    for (int i = 0; i < 4; ++i) {
+    for (size_t i = 0; i < 4; ++i) {
         v[2 * i] = _mm256_shuffle_ps(even[i], odd[i], _MM_SHUFFLE(2, 0, 2, 0));
         v[2 * i + 1] = _mm256_shuffle_ps(even[i], odd[i], _MM_SHUFFLE(3, 1, 3, 1));
     }
@@ -99,7 +99,7 @@ struct Lanes {
             const auto* bytes = reinterpret_cast<const __m128i*>(packing_table.from[mask]);
             from = _mm256_cvtepu8_epi32(_mm_loadl_epi64(bytes));
         }
-        size_t count() const { return static_cast<size_t>(__builtin_popcount(mask)); }
+        [[nodiscard]] size_t count() const { return static_cast<size_t>(__builtin_popcount(mask)); }
         void store(float* to, Real a) const
         {
             _mm256_storeu_ps(to, _mm256_permutevar8x32_ps(a, from));
@@ -131,7 +131,7 @@ struct Lanes {
                 base[i] = values + static_cast<size_t>(pieces[order[i]].brick) * 736;
             }
         }
-        Cell at(Real cell) const
+        [[nodiscard]] Cell at(Real cell) const
         {
             const __m256i byte = _mm256_slli_epi32(_mm256_cvttps_epi32(cell), 2);
             const auto* from = reinterpret_cast<const __m256i*>(base);

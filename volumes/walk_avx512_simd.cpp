@@ -26,7 +26,7 @@ inline void load_pairs(const float* const* p, Offsets offsets, __m512* v)
     __m512 odd[4];
     even_pairs(p, offsets, even);
     even_pairs(p + 2, offsets, odd);
-    for (int i = 0; i < 4; ++i) {
+    for (size_t i = 0; i < 4; ++i) {
         v[2 * i] = _mm512_shuffle_ps(even[i], odd[i], _MM_SHUFFLE(2, 0, 2, 0));
         v[2 * i + 1] = _mm512_shuffle_ps(even[i], odd[i], _MM_SHUFFLE(3, 1, 3, 1));
     }
@@ -91,7 +91,7 @@ struct Lanes {
         Mask mask;
 
         explicit Packing(Mask m) : mask(m) {}
-        size_t count() const { return static_cast<size_t>(__builtin_popcount(mask)); }
+        [[nodiscard]] size_t count() const { return static_cast<size_t>(__builtin_popcount(mask)); }
         void store(float* to, Real a) const
         {
             _mm512_storeu_ps(to, _mm512_maskz_compress_ps(mask, a));
@@ -122,7 +122,7 @@ struct Lanes {
                 base[i] = values + static_cast<size_t>(pieces[order[i]].brick) * 736;
             }
         }
-        Cell at(Real cell) const
+        [[nodiscard]] Cell at(Real cell) const
         {
             const __m512i byte = _mm512_slli_epi32(_mm512_cvttps_epi32(cell), 2);
             const auto* from = reinterpret_cast<const __m512i*>(base);
