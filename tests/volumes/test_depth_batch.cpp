@@ -74,6 +74,7 @@ std::vector<DepthQuery> random_queries(const Media& media, uint32_t count)
 {
     const Bounds3 bounds = bounds_of(media);
     std::vector<DepthQuery> out;
+    out.reserve(count);
     for (uint32_t i = 0; i < count; ++i) {
         Rng rng(3, 0, Stream::Test, i, 0);
         Ray ray = test::test_ray(bounds, i);
