@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <map>
+#include <memory>
 
 #include <fmt/core.h>
 
@@ -76,13 +77,14 @@ BrickRange range_of(const float* v)
 
 /// Rays touch bricks all over the grid; with 4 kB pages, address translation is 10 % of walks in
 /// all directions. To be called while memory is reserved but not yet touched. Only a hint.
-void prefer_huge_pages(const std::vector<float>& reserved)
+void prefer_huge_pages(std::vector<float>& reserved)
 {
-    constexpr uintptr_t page = 4096;
-    const auto begin = reinterpret_cast<uintptr_t>(reserved.data());
-    const uintptr_t first = (begin + page - 1) / page * page;
-    const uintptr_t end = (begin + reserved.capacity() * sizeof(float)) / page * page;
-    if (first < end) madvise(reinterpret_cast<void*>(first), end - first, MADV_HUGEPAGE);
+    constexpr size_t page = 4096;
+    void* begin = reserved.data();
+    size_t bytes = reserved.capacity() * sizeof(float);
+    if (std::align(page, page, begin, bytes) != nullptr) {
+        madvise(begin, bytes / page * page, MADV_HUGEPAGE);
+    }
 }
 
 struct Numbering {

@@ -35,7 +35,7 @@ struct BrickAxis {
     }
 
     /// s at which the ray leaves the cube of positions less than `reach` away.
-    Real border(Real reach) const
+    [[nodiscard]] Real border(Real reach) const
     {
         const Real plane = Lanes::fma(sign, reach, Lanes::add(c, first));
         const Real s = Lanes::mul(Lanes::sub(Lanes::mul(plane, Lanes::all(8.0f)), o), inv);
@@ -43,7 +43,7 @@ struct BrickAxis {
     }
 
     /// Position in this brick [voxels]; rounding may not leave it.
-    Real in_brick(Real s) const
+    [[nodiscard]] Real in_brick(Real s) const
     {
         const Real origin = Lanes::mul(c, Lanes::all(8.0f));
         return clamp(Lanes::fma(s, d, Lanes::sub(o, origin)), Lanes::all(0.0f), Lanes::all(8.0f));
@@ -51,7 +51,7 @@ struct BrickAxis {
 
     /// The table position after the step: across the border, or wherever s is inside the cube.
     /// Never against the ray's direction.
-    Real next(Mask crosses, Real reach, Real s) const
+    [[nodiscard]] Real next(Mask crosses, Real reach, Real s) const
     {
         const Real ahead = Lanes::fma(sign, Lanes::sub(reach, Lanes::all(1.0f)), c);
         const Real there = Lanes::mul(Lanes::fma(s, d, o), Lanes::all(0.125f));
@@ -61,7 +61,7 @@ struct BrickAxis {
                              Lanes::truncate(clamp(there, lo, hi)));
     }
 
-    Mask is_outside(Real position) const
+    [[nodiscard]] Mask is_outside(Real position) const
     {
         return Lanes::either(Lanes::less(position, Lanes::all(0.0f)), Lanes::less(last, position));
     }

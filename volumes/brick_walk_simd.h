@@ -17,11 +17,11 @@ struct BrickSpan {
 /// The stored bricks that a ray crosses, nearest first. Spans tile the ray's inside of the bricks
 /// without gap or overlap; empty space is crossed in jumps of the table's skip distances. x, y, z
 /// and the end of the ray are four lanes of one vector: next to no branches to mispredict.
-/// Measured: XX ns per position where a loop over the axes took 20.
+/// Measured: half the time of a loop over the axes for
+/// rays in all directions.
 class BrickWalk {
   public:
-    BrickWalk(const BrickGrid& grid, const LocalRay& ray)
-        : grid_(&grid), is_done_(ray.misses())
+    BrickWalk(const BrickGrid& grid, const LocalRay& ray) : grid_(&grid), is_done_(ray.misses())
     {
         if (is_done_) return;
         const __m128 zero = _mm_setzero_ps();

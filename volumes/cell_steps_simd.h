@@ -39,7 +39,7 @@ struct CellAxis {
     }
 
     /// s at which the ray leaves this cell through this axis.
-    Real exit() const
+    [[nodiscard]] Real exit() const
     {
         const Real s = Lanes::fma(g, minus_inv, up_inv);
         return Lanes::select(Lanes::equal(c, last), Lanes::all(1e38f), s);
@@ -52,7 +52,7 @@ struct CellAxis {
     }
 
     /// Position inside the cell.
-    Real at(Real s) const { return Lanes::fma(s, d, g); }
+    [[nodiscard]] Real at(Real s) const { return Lanes::fma(s, d, g); }
 };
 
 /// Trilinear value at (x, y, z) in [0,1]^3; v[i] at corner i, z the low bit, x the high one; `dz`
@@ -127,9 +127,10 @@ void prefetch_lanes(const float* values, const BrickPiece* pieces, const uint16_
 {
     for (size_t i = 0; i < Lanes::width; ++i) {
         const BrickPiece& piece = pieces[order[i]];
-        const int row = static_cast<int>(piece.p[0]) * 9 + static_cast<int>(piece.p[1]);
-        const float* corner = values + static_cast<size_t>(piece.brick) * 736 + row * 9 +
-                              static_cast<int>(piece.p[2]);
+        const auto x = static_cast<size_t>(piece.p[0]);
+        const auto y = static_cast<size_t>(piece.p[1]);
+        const auto z = static_cast<size_t>(piece.p[2]);
+        const float* corner = values + static_cast<size_t>(piece.brick) * 736 + (x * 9 + y) * 9 + z;
         constexpr int offset[4] = {0, 10, 81, 91};
         for (int j = 0; j < 4; ++j) __builtin_prefetch(corner + offset[j]);
     }

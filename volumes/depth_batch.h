@@ -30,7 +30,7 @@ struct WalkCounts {
 /// Each result depends on its own query alone, bit for bit: not on the batch around it, nor on the
 /// instruction set (walk_isa). Rays are cut into pieces through bricks; pieces that cross equally
 /// many cells run side by side in the lanes of a vector. Cost per cell, measured by bench_tracking:
-/// see the README. Pays from about 16 rays on.
+/// see the README. Pays from about 4 rays on.
 void optical_depths(const Media& media, std::span<const DepthQuery> queries, std::span<float> tau,
                     WalkCounts& counts);
 

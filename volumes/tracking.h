@@ -34,7 +34,7 @@ struct Collision {
 
 /// Where the optical depth of one volume, counted from range.t0, reaches `tau`; empty if it does
 /// not within the range. With tau = sample_exponential(u) this is an exact free flight from one
-/// random number. Cost: every cell up to there (about 20 ns each).
+/// random number. Cost: every cell up to there (about 15 ns each).
 [[nodiscard]] std::optional<Collision> invert_optical_depth(const Volume& volume, const Ray& ray,
                                                             Interval range, float tau);
 

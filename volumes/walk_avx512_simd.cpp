@@ -2,33 +2,10 @@
 
 #include "volumes/brick_steps_simd.h"
 #include "volumes/cell_steps_simd.h"
+#include "volumes/lane_loads_simd.h"
 
 namespace mote {
 namespace {
-
-/// Where the pairs of one lane begin, next to each other in v[0] to v[7] once loaded.
-struct Offsets {
-    int pair[4];
-};
-constexpr Offsets corner_offsets{{0, 9, 81, 90}};
-constexpr Offsets field_offsets{{0, 2, 4, 6}};
-
-/// Two 8-byte pairs of floats as one vector.
-inline __m128 two_pairs(const float* p, const float* q)
-{
-    const __m128d low = _mm_load_sd(reinterpret_cast<const double*>(p));
-    return _mm_castpd_ps(_mm_loadh_pd(low, reinterpret_cast<const double*>(q)));
-}
-
-/// The pairs at each offset: lanes 0, 1 in the low half and 4, 5 in the high one.
-inline void half_pairs(const float* const* p, Offsets offsets, __m256* out)
-{
-    for (int i = 0; i < 4; ++i) {
-        const int at = offsets.pair[i];
-        out[i] = _mm256_insertf128_ps(_mm256_castps128_ps256(two_pairs(p[0] + at, p[1] + at)),
-                                      two_pairs(p[4] + at, p[5] + at), 1);
-    }
-}
 
 /// The pairs at each offset, lanes 0, 1, 4, 5, 8, 9, 12, 13.
 inline void even_pairs(const float* const* p, Offsets offsets, __m512* out)
@@ -49,12 +26,13 @@ inline void load_pairs(const float* const* p, Offsets offsets, __m512* v)
     __m512 odd[4];
     even_pairs(p, offsets, even);
     even_pairs(p + 2, offsets, odd);
-    for (int i = 0; i < 4; ++i) {
+    for (size_t i = 0; i < 4; ++i) {
         v[2 * i] = _mm512_shuffle_ps(even[i], odd[i], _MM_SHUFFLE(2, 0, 2, 0));
         v[2 * i + 1] = _mm512_shuffle_ps(even[i], odd[i], _MM_SHUFFLE(3, 1, 3, 1));
     }
 }
 
+/// Sixteen lanes.
 struct Lanes {
     using Real = __m512;
     using Int = __m512i;
@@ -113,7 +91,7 @@ struct Lanes {
         Mask mask;
 
         explicit Packing(Mask m) : mask(m) {}
-        size_t count() const { return static_cast<size_t>(__builtin_popcount(mask)); }
+        [[nodiscard]] size_t count() const { return static_cast<size_t>(__builtin_popcount(mask)); }
         void store(float* to, Real a) const
         {
             _mm512_storeu_ps(to, _mm512_maskz_compress_ps(mask, a));
@@ -144,7 +122,7 @@ struct Lanes {
                 base[i] = values + static_cast<size_t>(pieces[order[i]].brick) * 736;
             }
         }
-        Cell at(Real cell) const
+        [[nodiscard]] Cell at(Real cell) const
         {
             const __m512i byte = _mm512_slli_epi32(_mm512_cvttps_epi32(cell), 2);
             const auto* from = reinterpret_cast<const __m512i*>(base);

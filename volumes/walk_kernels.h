@@ -33,7 +33,7 @@ struct RayBlock {
 /// Pieces of rays through bricks, as they come out of the walk. Room for one group more than
 /// `capacity`: whole vectors are stored.
 struct PieceList {
-    static constexpr size_t capacity = 2048;
+    static constexpr size_t capacity = 1024;
 
     float p[3][capacity + lane_group];     ///< entry point in the brick, within [0,8]
     float length[capacity + lane_group];   ///< > 0 [m]

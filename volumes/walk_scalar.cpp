@@ -53,7 +53,7 @@ struct Lanes {
         bool mask;
 
         explicit Packing(Mask m) : mask(m) {}
-        size_t count() const { return mask ? 1 : 0; }
+        [[nodiscard]] size_t count() const { return mask ? 1 : 0; }
         template <class T>
         void store(T* to, T a) const
         {
@@ -78,7 +78,7 @@ struct Lanes {
             : base(values + static_cast<size_t>(pieces[order[0]].brick) * 736)
         {
         }
-        Cell at(Real cell) const { return {base + static_cast<int>(cell)}; }
+        [[nodiscard]] Cell at(Real cell) const { return {base + static_cast<int>(cell)}; }
     };
 };
 
