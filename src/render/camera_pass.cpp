@@ -121,8 +121,7 @@ void begin_pass(const PassInputs& inputs, const PassKey& key, int owner, PixelDo
     const Vec2 film = Vec2(key.x, key.y) + pair(numbers, NumberPair::Film);
     const Camera& camera = scene.camera;
     const Vec2 lens = camera.lens_radius > 0.0f ? pair(numbers, NumberPair::Lens) : Vec2(0.5f);
-    const bool is_open = scene.shutter_close > scene.shutter_open;
-    const float time = is_open ? pair(numbers, NumberPair::Time).x : 0.0f;
+    const float time = frame.has_motion ? pair(numbers, NumberPair::Time).x : 0.0f;
     const Ray ray = generate_ray(camera, film, lens, time);
     make_pixel_domain(frame, ray, domain, counts.bins);
 

@@ -38,7 +38,9 @@ FrameDomain make_frame_domain(std::shared_ptr<const Scene> scene,
         add(distant ? SampledLightKind::Distant : SampledLightKind::Lamp, static_cast<int>(i),
             distant);
     }
+    frame.has_motion = scene->camera.world_from_camera.is_moving();
     for (size_t i = 0; i < scene->media.volumes.size(); ++i) {
+        frame.has_motion |= scene->media.volumes[i].world_from_object.is_moving();
         frame.has_emission |= scene->media.volumes[i].emission_params.is_on();
         if (caches->emissive[i]) {
             add(SampledLightKind::EmissiveVolume, static_cast<int>(i), false);
