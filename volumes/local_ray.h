@@ -52,4 +52,11 @@ struct LocalRay {
     return out;
 }
 
+/// A world ray in the density grid of a volume that is not void, at the ray's time.
+[[nodiscard]] inline LocalRay density_ray(const Volume& volume, const Ray& ray, Interval range)
+{
+    if (volume.at_rest) return make_local_ray(*volume.density, volume.at_rest->density, ray, range);
+    return make_local_ray(*volume.density, frames_at(volume, ray.time).density, ray, range);
+}
+
 }  // namespace mote

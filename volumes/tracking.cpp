@@ -2,24 +2,13 @@
 
 #include "volumes/cell_walk.h"
 #include "volumes/collisions.h"
+#include "volumes/media_at.h"
 
 namespace mote {
 namespace {
 
 /// Beyond this optical depth a float's exp(-tau) is 0.
 constexpr float opaque = 104.0f;
-
-bool is_void(const Volume& volume)
-{
-    return !volume.density || volume.density->index_bounds.is_empty() ||
-           !(volume.density_scale > 0.0f);
-}
-
-LocalRay density_ray(const Volume& volume, const Ray& ray, Interval range)
-{
-    if (volume.at_rest) return make_local_ray(*volume.density, volume.at_rest->density, ray, range);
-    return make_local_ray(*volume.density, frames_at(volume, ray.time).density, ray, range);
-}
 
 Collision collision_at(const Volume& volume, const LocalRay& local, float s)
 {
@@ -128,6 +117,15 @@ float sigma_t_at(const Volume& volume, Vec3 p_object)
     if (is_void(volume)) return 0.0f;
     const BrickGrid& grid = *volume.density;
     return volume.density_scale * sample_trilinear(grid, grid.index_from_object.point(p_object));
+}
+
+float sigma_t_at(const Media& media, Vec3 p, float time)
+{
+    float sum = 0.0f;
+    for_each_medium_at(
+        media, p, time,
+        [&](const Volume& /*volume*/, Vec3 /*local*/, float sigma_t) { sum += sigma_t; });
+    return sum;
 }
 
 Vec3 velocity_at(const Volume& volume, Vec3 p_object)

@@ -55,6 +55,9 @@ struct Collision {
 /// Extinction [1/m].
 [[nodiscard]] float sigma_t_at(const Volume& volume, Vec3 p_object);
 
+/// Extinction of all media at a world point and ray time [1/m].
+[[nodiscard]] float sigma_t_at(const Media& media, Vec3 p, float time);
+
 /// Velocity of the medium in object space [m/s]; 0 without a velocity grid.
 [[nodiscard]] Vec3 velocity_at(const Volume& volume, Vec3 p_object);
 

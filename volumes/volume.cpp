@@ -78,6 +78,15 @@ Affine object_from_local(const Volume& volume)
     return volume.object_from_local ? *volume.object_from_local : compute_object_from_local(volume);
 }
 
+Vec3 object_point(const Volume& volume, Vec3 p, float time)
+{
+    if (volume.at_rest && volume.density) {
+        return object_from_local(volume).point(Vec3(volume.at_rest->density.point(p)));
+    }
+    const Mat4d object_from_world = glm::inverse(matrix(volume.world_from_object.at(time)));
+    return Vec3(object_from_world * glm::dvec4(Vec3d(p), 1.0));
+}
+
 Interval volume_interval(const Volume& volume, const Ray& ray, Interval range)
 {
     if (!volume.density) return {};

@@ -64,6 +64,13 @@ struct Volume {
     std::optional<VolumeFrames> at_rest;      ///< stays empty if the volume moves
 };
 
+/// Whether a volume scatters and absorbs nothing anywhere.
+[[nodiscard]] inline bool is_void(const Volume& volume)
+{
+    return !volume.density || volume.density->index_bounds.is_empty() ||
+           !(volume.density_scale > 0.0f);
+}
+
 /// Caches the transforms. Call it once all fields are set, and again after changing density,
 /// emission or world_from_object. Without it everything works, slower.
 void finalize(Volume& volume);
@@ -73,6 +80,9 @@ void finalize(Volume& volume);
 
 /// Local coordinates of the density grid -> object space.
 [[nodiscard]] Affine object_from_local(const Volume& volume);
+
+/// A world point in the volume's object space, at ray time.
+[[nodiscard]] Vec3 object_point(const Volume& volume, Vec3 p, float time);
 
 /// Where a ray meets a volume's density at its time; empty if it misses.
 [[nodiscard]] Interval volume_interval(const Volume& volume, const Ray& ray, Interval range);

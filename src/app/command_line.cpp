@@ -13,6 +13,7 @@
 #include "app/shared_options.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "volumes/walk_isa.h"
 
 namespace mote {
 
@@ -29,6 +30,8 @@ const std::map<std::string, ExistingMode> cache_existing_modes{
     {"overwrite", ExistingMode::Overwrite}, {"skip", ExistingMode::Skip}};
 const std::map<std::string, ProgressMode> progress_modes{
     {"auto", ProgressMode::Auto}, {"json", ProgressMode::Json}, {"none", ProgressMode::None}};
+const std::map<std::string, std::optional<Isa>> isas{
+    {"auto", std::nullopt}, {"scalar", Isa::Scalar}, {"avx2", Isa::Avx2}, {"avx512", Isa::Avx512}};
 
 /// An option whose value is one of a few words.
 template <class T>
@@ -222,6 +225,7 @@ struct AllOptions {
     CompareOptions compare;
     BenchOptions bench;
     SchemaOptions schema;
+    std::optional<Isa> isa;
     std::vector<std::string> shorthands;  ///< overrides that render options stand for
 };
 
@@ -229,6 +233,9 @@ void bind_all(CLI::App& app, AllOptions& o)
 {
     app.require_subcommand(1);
     app.set_version_flag("--version", "mote " MOTE_VERSION);
+    add_choice(app, "--isa", o.isa, isas,
+               "Instruction set of the ray walk, the best there is by default; the pictures are "
+               "the same to the bit. Also behind a command");
     app.footer(exit_code_table() + "\n`mote COMMAND --help` explains a command.\n");
     bind_render(*app.add_subcommand("render", "Render frames of a scene to OpenEXR and PNG"),
                 o.render, o.shorthands);
@@ -246,6 +253,7 @@ void bind_all(CLI::App& app, AllOptions& o)
     app.add_subcommand("schema", "Print the JSON Schema of scene files")
         ->add_flag("--markdown", o.schema.markdown, "Print the tables of scenes/README.md instead");
     app.add_subcommand("version", "Print the version, the build and the libraries");
+    for (CLI::App* command : app.get_subcommands({})) command->fallthrough();
 }
 
 std::vector<std::string> option_names(const CLI::App& app)
@@ -346,6 +354,7 @@ CommandLine parse_command_line(const std::vector<std::string>& arguments)
     } catch (const CLI::ParseError& error) {
         refuse(app, printable(error.what()));
     }
+    set_walk_isa(options.isa);
     return chosen_command(app, options);
 }
 

@@ -27,6 +27,8 @@ const char* estimator_name(EstimatorKind kind)
     switch (kind) {
         case EstimatorKind::Path:
             return "path, unbiased";
+        case EstimatorKind::Restir:
+            return "restir";
     }
     return "";
 }

@@ -44,6 +44,7 @@ struct Run {
     std::vector<FrameFiles> files;
     int threads = 1;
     SceneCache cache;
+    FrameHistory history;
     std::vector<FrameRecord> records;
 };
 
@@ -121,8 +122,8 @@ void render_one(const FrameFiles& files, Run& run, Progress& progress, FrameReco
     const int64_t steps = progress.steps_of_last_frame();
     progress.begin_frame(files.frame, steps > 0 ? steps : tiles);
     listening_progress = &progress;
-    LayeredImage image = render_frame(frame, scene.render, scene.output, stop_requested,
-                                      record.render, step_progress);
+    LayeredImage image = render_frame(frame, scene.render, scene.output, run.history,
+                                      stop_requested, record.render, step_progress);
     listening_progress = nullptr;
     if (image.channels.empty()) throw_interrupted(files.frame);
     if (record.render.dropped_non_finite > 0) {
@@ -220,7 +221,7 @@ void run_render(const RenderOptions& options)
     const std::vector<int> frames = chosen_frames(options.frames, scene);
     files = frame_files(frames, scene.output.path, scene.output.preview);
     written_files = &files;
-    Run run{options, scene, files, chosen_threads(options.threads), {}, {}};
+    Run run{options, scene, files, chosen_threads(options.threads), {}, {}, {}};
     run_with_threads(run.threads, [&] {
         if (options.dry_run) {
             dry_run(run);

@@ -5,6 +5,7 @@
 #include <tbb/version.h>
 
 #include "app/commands.h"
+#include "volumes/walk_isa.h"
 
 namespace mote {
 
@@ -18,6 +19,7 @@ void run_version(const VersionOptions&)
                "gcc", __VERSION__,
 #endif
                MOTE_BUILD_TYPE, MOTE_ARCH);
+    fmt::print("ray walk  {} (--isa)\n", name_of(walk_isa()));
     fmt::print("libraries OpenVDB {}, OpenEXR {}, oneTBB {}, fmt {}.{}.{}, spdlog {}.{}.{}\n",
                OPENVDB_LIBRARY_VERSION_STRING, OPENEXR_VERSION_STRING, TBB_VERSION_STRING,
                FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100, SPDLOG_VER_MAJOR,

@@ -60,7 +60,7 @@ void parallel_for(size_t count, size_t grain, const std::function<void(size_t, s
 
 void for_each_tile(int width, int height, const std::function<void(const Tile&)>& f)
 {
-    constexpr int size = 16;
+    constexpr int size = image_tile_size;
     const int columns = (width + size - 1) / size;
     const int rows = (height + size - 1) / size;
     if (columns <= 0 || rows <= 0) return;

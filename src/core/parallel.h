@@ -14,6 +14,8 @@ struct Tile {
     int x0, y0, x1, y1;
 };
 
+inline constexpr int image_tile_size = 16;
+
 /// Calls f(tile) for 16x16 tiles covering the image, in parallel. A tile is the unit of scheduling:
 /// per-thread set-up belongs here, pixels do not depend on each other.
 void for_each_tile(int width, int height, const std::function<void(const Tile&)>& f);

@@ -46,6 +46,11 @@ class AovSet {
     [[nodiscard]] bool has(Aov aov) const { return bits_.test(static_cast<size_t>(aov)); }
     /// Whether the scene must be prepared with velocity grids and the next frame's transforms.
     [[nodiscard]] bool needs_motion() const { return has(Aov::Motion); }
+    /// Whether any of them tells of first collisions.
+    [[nodiscard]] bool needs_first_collision() const
+    {
+        return has(Aov::Z) || has(Aov::VolumeZ) || has(Aov::Albedo) || has(Aov::Motion);
+    }
 
   private:
     std::bitset<aov_count> bits_;

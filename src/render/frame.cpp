@@ -2,13 +2,15 @@
 
 #include <atomic>
 #include <chrono>
-#include <ctime>
 
 #include "core/parallel.h"
 #include "reference/path_tracer.h"
 #include "render/film.h"
 #include "render/metadata.h"
 #include "render/motion.h"
+#include "render/restir_frame.h"
+#include "render/view_depth.h"
+#include "restir/cache_stats.h"
 
 namespace mote {
 namespace {
@@ -23,21 +25,6 @@ struct FrameInputs {
 
 /// Few enough that a stop takes effect at once, many enough that asking costs nothing.
 constexpr int samples_between_polls = 32;
-
-double process_cpu_seconds()
-{
-    timespec t{};
-    ::clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-/// Distance along the ray -> depth along the camera's view axis.
-float view_depth(const Camera& camera, const Ray& ray, float distance)
-{
-    const Quatd rotation = camera.world_from_camera.at(ray.time).rotate;
-    const Vec3d forward = rotation * Vec3d(0.0, 0.0, -1.0);
-    return distance * static_cast<float>(glm::dot(forward, Vec3d(ray.d)));
-}
 
 FilmSample trace_sample(const FrameInputs& frame, int x, int y, uint32_t sample, bool& truncated)
 {
@@ -61,9 +48,9 @@ FilmSample trace_sample(const FrameInputs& frame, int x, int y, uint32_t sample,
     out.collided = path.depth < infinity;
     out.albedo = path.albedo;
     const AovSet& aovs = frame.aovs;
-    const bool needs_depth = aovs.has(Aov::Z) || aovs.has(Aov::VolumeZ);
     if (out.collided) {
-        out.depth = needs_depth ? view_depth(scene.camera, ray, path.depth) : path.depth;
+        out.depth =
+            aovs.needs_first_collision() ? view_depth(scene.camera, ray, path.depth) : path.depth;
     }
     if (aovs.needs_motion()) out.motion = film_motion(scene, ray, path.depth);
     if (aovs.has(Aov::Transmittance) || aovs.has(Aov::OpticalDepth)) {
@@ -72,24 +59,16 @@ FilmSample trace_sample(const FrameInputs& frame, int x, int y, uint32_t sample,
     return out;
 }
 
-}  // namespace
-
-LayeredImage render_frame(const Scene& scene, const RenderDescription& render,
-                          const OutputDescription& output, StopRequested stop, FrameStats& stats,
-                          TileDone tile_done)
+/// All samples by the path tracer. False if stopped.
+bool render_paths(const FrameInputs& frame, const FrameControl& control, Film& film,
+                  FrameStats& stats)
 {
-    const auto start = std::chrono::steady_clock::now();
-    const double cpu_start = process_cpu_seconds();
-    const AovSet aovs = parse_aovs(output.aovs);
-    const FrameInputs frame{scene, render, aovs, build_light_sampler(scene, render.path)};
-    const Camera& camera = scene.camera;
-    Film film(camera.width, camera.height, aovs, output.color_type);
+    const Camera& camera = frame.scene.camera;
     std::atomic<bool> stopped{false};
     std::atomic<int64_t> dropped{0};
     std::atomic<int64_t> truncated_paths{0};
-
     const auto must_stop = [&] {
-        if (stop && stop()) stopped.store(true, std::memory_order_relaxed);
+        if (control.stop && control.stop()) stopped.store(true, std::memory_order_relaxed);
         return stopped.load(std::memory_order_relaxed);
     };
     for_each_tile(camera.width, camera.height, [&](const Tile& tile) {
@@ -98,7 +77,7 @@ LayeredImage render_frame(const Scene& scene, const RenderDescription& render,
         for (int y = tile.y0; y < tile.y1; ++y) {
             for (int x = tile.x0; x < tile.x1; ++x) {
                 PixelFilm pixel;
-                for (int i = 0; i < render.samples; ++i) {
+                for (int i = 0; i < frame.render.samples; ++i) {
                     if (i % samples_between_polls == 0 && must_stop()) return;
                     bool truncated = false;
                     const FilmSample sample =
@@ -111,19 +90,38 @@ LayeredImage render_frame(const Scene& scene, const RenderDescription& render,
         }
         dropped += tile_dropped;
         truncated_paths += tile_truncated;
-        if (tile_done) tile_done();
+        if (control.tile_done) control.tile_done();
     });
+    stats.dropped_non_finite = dropped;
+    stats.truncated_paths = truncated_paths;
+    return !stopped;
+}
 
+}  // namespace
+
+FrameHistory::FrameHistory() : impl_(std::make_unique<Impl>()) {}
+FrameHistory::~FrameHistory() = default;
+
+LayeredImage render_frame(const Scene& scene, const RenderDescription& render,
+                          const OutputDescription& output, FrameHistory& history,
+                          StopRequested stop, FrameStats& stats, TileDone tile_done)
+{
+    const auto start = std::chrono::steady_clock::now();
+    const double cpu_start = process_cpu_seconds();
+    const AovSet aovs = parse_aovs(output.aovs);
+    const FrameInputs frame{scene, render, aovs, build_light_sampler(scene, render.path)};
+    const Camera& camera = scene.camera;
+    const FrameControl control{stop, tile_done};
+    Film film(camera.width, camera.height, aovs, output.color_type);
+    const bool finished =
+        render.estimator == EstimatorKind::Restir
+            ? render_restir(scene, render, aovs, frame.lights, control, history.impl(), film, stats)
+            : render_paths(frame, control, film, stats);
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     stats.render_seconds = wall.count();
     stats.render_cpu_seconds = process_cpu_seconds() - cpu_start;
-    stats.dropped_non_finite = dropped;
-    stats.truncated_paths = truncated_paths;
-    stats.paths = int64_t{render.samples} * camera.width * camera.height;
-    if (stopped) {
-        stats.paths = 0;
-        return {};
-    }
+    stats.paths = finished ? int64_t{render.samples} * camera.width * camera.height : 0;
+    if (!finished) return {};
     LayeredImage image = film.take();
     image.attributes = camera_attributes(camera);
     return image;

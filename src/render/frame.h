@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
 #include "image/layers.h"
 #include "scene/description.h"
@@ -15,6 +16,11 @@ struct FrameStats {
     int64_t paths = 0;
     int64_t dropped_non_finite = 0;  ///< samples replaced by 0; must be 0
     int64_t truncated_paths = 0;     ///< cut by max_bounces though they could have gone on
+    double cache_cpu_seconds = 0.0;  ///< building light caches, part of render_cpu_seconds
+    int64_t camera_rays = 0;         ///< tabulated by the ReSTIR estimator: those that met smoke
+    int64_t light_rays = 0;          ///< traced exactly towards lights
+    int64_t cells = 0;               ///< walked by both
+    int64_t candidates = 0;
 };
 
 /// Asked by several threads, at every pixel and every few samples, so it must be cheap; true
@@ -24,6 +30,21 @@ using StopRequested = bool (*)();
 /// Called by several threads after each 16 x 16 tile. May be null.
 using TileDone = void (*)();
 
+/// What the ReSTIR estimator keeps from frame to frame of one run: light caches, and with reuse
+/// also reservoirs and the domain they live in. Empty at the start and after a cut.
+class FrameHistory {
+  public:
+    FrameHistory();
+    ~FrameHistory();
+    FrameHistory(const FrameHistory&) = delete;
+    FrameHistory& operator=(const FrameHistory&) = delete;
+    struct Impl;
+    [[nodiscard]] Impl& impl() { return *impl_; }
+
+  private:
+    std::unique_ptr<Impl> impl_;
+};
+
 /// Renders one frame into a layered image holding RGBA and the layers of output.aovs (see aov.h),
 /// nothing else: layers not asked for are not computed. RGB is the mean over the pixel's square,
 /// premultiplied by nothing but the volumes themselves; A is 1 minus the mean transmittance.
@@ -31,7 +52,8 @@ using TileDone = void (*)();
 /// every sample has its own random stream, keyed by (seed, frame, pixel, sample), and a pixel adds
 /// its samples in order. Throws Error(Input) for unknown layers.
 [[nodiscard]] LayeredImage render_frame(const Scene& scene, const RenderDescription& render,
-                                        const OutputDescription& output, StopRequested stop,
-                                        FrameStats& stats, TileDone tile_done = nullptr);
+                                        const OutputDescription& output, FrameHistory& history,
+                                        StopRequested stop, FrameStats& stats,
+                                        TileDone tile_done = nullptr);
 
 }  // namespace mote

@@ -10,6 +10,7 @@
 #include "image/png.h"
 #include "particles/source.h"
 #include "scene/path_tracer_params.h"
+#include "scene/restir_params.h"
 #include "volumes/grid_source.h"
 #include "volumes/phase.h"
 #include "volumes/volume.h"
@@ -37,7 +38,10 @@ struct CameraDescription {
     std::vector<CameraKey> keys;  ///< override the fields above, linear between
 };
 
-enum class EstimatorKind { Path };
+enum class EstimatorKind {
+    Path,    ///< the reference path tracer
+    Restir,  ///< volumetric ReSTIR; events beyond the first by the path tracer
+};
 
 struct RenderDescription {
     int width = 640;
@@ -46,6 +50,7 @@ struct RenderDescription {
     uint32_t seed = 0;
     EstimatorKind estimator = EstimatorKind::Path;
     PathTracerParams path;  ///< bounces, roulette, transmittance, light choice
+    RestirParams restir;
 };
 
 struct OutputDescription {

@@ -4,7 +4,7 @@
 namespace mote {
 namespace {
 
-constexpr std::array estimator_names = {"path"};
+constexpr std::array estimator_names = {"path", "restir"};
 constexpr std::array transmittance_names = {"ratio", "residual_ratio", "exact"};
 constexpr std::array light_sampler_names = {"auto", "power", "power_distance", "tree"};
 constexpr std::array light_strategy_names = {"auto", "mis", "next_event", "phase"};
@@ -178,6 +178,10 @@ void describe(FieldVisitor& v, RenderDescription& render)
                  .doc = "How the path estimator samples; every choice is "
                         "unbiased and only moves noise and time"},
                 render.path);
+    visit_table(v,
+                {.key = "restir",
+                 .doc = "How the restir estimator samples; unbiased unless a key says otherwise"},
+                render.restir);
 }
 
 void describe(FieldVisitor& v, PathTracerParams& path)

@@ -5,6 +5,7 @@
 #include "app/command_line.h"
 #include "app/exit_codes.h"
 #include "core/error.h"
+#include "volumes/walk_isa.h"
 
 namespace mote {
 
@@ -47,6 +48,19 @@ TEST(CommandLine, HelpShowsEveryCommandAndTheTableOfExitCodes)
     }
     EXPECT_TRUE(contains(parse<PrintText>({"render", "--help"}).text, "--existing"));
     EXPECT_TRUE(contains(parse<PrintText>({"--version"}).text, "mote "));
+}
+
+TEST(CommandLine, IsaIsAnOptionOfTheProgram)
+{
+    const Isa best = walk_isa();
+    (void)parse<VersionOptions>({"--isa", "scalar", "version"});
+    EXPECT_EQ(walk_isa(), Isa::Scalar);
+    EXPECT_TRUE(parse<RenderOptions>({"render", "a.toml", "--isa", "auto", "--dry-run"}).dry_run);
+    EXPECT_EQ(walk_isa(), best);
+    EXPECT_TRUE(contains(refusal({"--isa", "sse", "version"}), "auto|avx2|avx512|scalar"));
+    if (!is_supported(Isa::Avx512)) {
+        EXPECT_TRUE(contains(refusal({"--isa", "avx512", "version"}), "has no avx512"));
+    }
 }
 
 TEST(CommandLine, ReadsARender)

@@ -5,8 +5,10 @@
 
 #include "core/sampling.h"
 #include "volumes/cell_walk.h"
+#include "volumes/depth_batch.h"
 #include "volumes/procedural_bricks.h"
 #include "volumes/tracking.h"
+#include "volumes/walk_isa.h"
 
 namespace mote {
 namespace {
@@ -36,20 +38,22 @@ const Media& plume()
     return media;
 }
 
-/// Camera rays of a 480 x 270 image that hit the plume's bounds, in scanline order.
+/// Camera rays of a 480 x 270 image that hit the plume's bounds.
 const std::vector<Ray>& camera_rays()
 {
     static const std::vector<Ray> rays = [] {
         std::vector<Ray> out;
         const Vec3 eye(0.0f, 0.0f, -3.6f);
-        for (int y = 0; y < 270; ++y) {
-            for (int x = 0; x < 480; ++x) {
-                const Vec3 d = glm::normalize(
-                    Vec3(static_cast<float>(x - 240), static_cast<float>(y - 135), 440.0f));
-                const Ray ray{eye, d};
-                if (!volume_interval(plume().volumes[0], ray, everything).is_empty()) {
-                    out.push_back(ray);
-                }
+        // 16 x 16 pixel tiles, as a renderer takes them.
+        for (int i = 0; i < 480 * 272; ++i) {
+            const int tile = i / 256;
+            const int x = tile % 30 * 16 + i % 16;
+            const int y = tile / 30 * 16 + i / 16 % 16;
+            const Vec3 d = glm::normalize(
+                Vec3(static_cast<float>(x - 240), static_cast<float>(y - 135), 440.0f));
+            const Ray ray{eye, d};
+            if (!volume_interval(plume().volumes[0], ray, everything).is_empty()) {
+                out.push_back(ray);
             }
         }
         return out;
@@ -180,6 +184,68 @@ void exact_cells(benchmark::State& state)
                                   static_cast<double>(camera_rays().size());
 }
 BENCHMARK(exact_cells)->Unit(benchmark::kMillisecond);
+
+/// Rays in all directions from the same collisions.
+const std::vector<Ray>& isotropic_rays()
+{
+    static const std::vector<Ray> rays = [] {
+        std::vector<Ray> out = shadow_rays();
+        for (size_t i = 0; i < out.size(); ++i) {
+            Rng rng(2, 0, Stream::Test, static_cast<uint32_t>(i), 0);
+            out[i].d = sample_sphere(rng.uniform2());
+        }
+        return out;
+    }();
+    return rays;
+}
+
+/// Exact optical depths of many rays at once: camera, towards the sun, in all directions. `form`
+/// 0 is a call of optical_depth per ray, 1 to 3 optical_depths in scalar, AVX2 and AVX-512 form.
+void depth_batch(benchmark::State& state)
+{
+    const int64_t form = state.range(0);
+    const int64_t kind = state.range(1);
+    const float tau_max = state.range(2) > 0 ? static_cast<float>(state.range(2)) : infinity;
+    const size_t batch = static_cast<size_t>(state.range(3));
+    const auto& rays = kind == 0 ? camera_rays() : kind == 1 ? shadow_rays() : isotropic_rays();
+    if (form > 0 && !is_supported(static_cast<Isa>(form - 1))) {
+        state.SkipWithError("not on this machine");
+        return;
+    }
+    set_walk_isa(form > 0 ? std::optional(static_cast<Isa>(form - 1)) : std::nullopt);
+    std::vector<DepthQuery> queries;
+    for (const Ray& ray : rays) queries.push_back({ray.o, infinity, ray.d, 0.0f, tau_max});
+    std::vector<float> tau(queries.size());
+    WalkCounts counts;
+    optical_depths(plume(), queries, tau, counts);
+    const auto cells = static_cast<double>(counts.cells);
+    for (auto _ : state) {
+        if (form == 0) {
+            for (size_t i = 0; i < rays.size(); ++i) {
+                tau[i] = optical_depth(plume(), rays[i], everything);
+            }
+        } else {
+            for (size_t i = 0; i < queries.size(); i += batch) {
+                const size_t count = std::min(batch, queries.size() - i);
+                optical_depths(plume(), std::span(queries).subspan(i, count),
+                               std::span(tau).subspan(i, count), counts);
+            }
+        }
+        benchmark::DoNotOptimize(tau.data());
+    }
+    const auto per = [](double items) {
+        return benchmark::Counter(
+            items, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+    };
+    state.counters["per_cell"] = per(cells);
+    state.counters["per_ray"] = per(static_cast<double>(rays.size()));
+    state.counters["cells/ray"] = cells / static_cast<double>(rays.size());
+}
+BENCHMARK(depth_batch)
+    ->Unit(benchmark::kMillisecond)
+    ->ArgNames({"form(one,scalar,avx2,avx512)", "rays(camera,sun,all)", "tau_max", "batch"})
+    ->ArgsProduct({{0, 1, 2, 3}, {0, 1, 2}, {0}, {1024}})
+    ->Args({3, 1, 5, 1024});
 
 /// Lookups one voxel apart along rays, and at random points.
 void lookups(benchmark::State& state)

@@ -72,7 +72,8 @@ Options options(int samples, int bounces, std::vector<std::string> aovs)
 LayeredImage render(const Scene& scene, const Options& o, FrameStats* stats = nullptr)
 {
     FrameStats own;
-    return render_frame(scene, o.render, o.output, nullptr, stats ? *stats : own);
+    FrameHistory history;
+    return render_frame(scene, o.render, o.output, history, nullptr, stats ? *stats : own);
 }
 
 bool same_bits(const LayeredImage& a, const LayeredImage& b)
@@ -249,8 +250,9 @@ TEST(Frame, StopsBetweenTiles)
 {
     const Options o = options(1, 1, {});
     FrameStats stats;
+    FrameHistory history;
     const LayeredImage image = render_frame(
-        cloudy_scene(), o.render, o.output, [] { return true; }, stats);
+        cloudy_scene(), o.render, o.output, history, [] { return true; }, stats);
     EXPECT_TRUE(image.channels.empty());
     EXPECT_EQ(image.width, 0);
 }
@@ -264,8 +266,9 @@ TEST(Frame, StopsWithinAPixel)
     scene.camera.width = 1;
     scene.camera.height = 1;
     FrameStats stats;
+    FrameHistory history;
     const LayeredImage image = render_frame(
-        scene, o.render, o.output, [] { return ++looks > 3; }, stats);
+        scene, o.render, o.output, history, [] { return ++looks > 3; }, stats);
     EXPECT_TRUE(image.channels.empty());
     EXPECT_EQ(looks, 4);
 }

@@ -1,0 +1,157 @@
+#include "render/camera_pass.h"
+
+#include "reference/path_tracer.h"
+#include "render/motion.h"
+#include "render/view_depth.h"
+#include "scene/environment.h"
+#include "volumes/emission.h"
+#include "volumes/media_at.h"
+
+namespace mote {
+namespace {
+
+uint32_t pixel_index(const Camera& camera, const PassKey& key)
+{
+    return static_cast<uint32_t>(key.y * camera.width + key.x);
+}
+
+PassSequence pass_numbers(const PassInputs& inputs, const PassKey& key)
+{
+    const Scene& scene = *inputs.domain.scene;
+    const uint32_t frame_key =
+        hash_combine(hash_combine(hash32(inputs.render.seed), static_cast<uint32_t>(scene.frame)),
+                     static_cast<uint32_t>(Stream::Camera));
+    return {hash_combine(frame_key, pixel_index(scene.camera, key)), key.pass};
+}
+
+Vec2 pair(const PassSequence& numbers, NumberPair which)
+{
+    return numbers.pair(static_cast<uint32_t>(which));
+}
+
+/// Transmittance from the camera to a world distance.
+float transmittance_to(const FrameDomain& frame, const PixelDomain& domain, float t)
+{
+    const auto s = static_cast<float>(static_cast<double>(t) - domain.bins.t0);
+    return std::exp(-depth_to(frame.scene->media, domain.ray, domain.bins, s));
+}
+
+Spectrum seen_background(const PassInputs& inputs, const PixelDomain& domain, float transmittance)
+{
+    const Scene& scene = *inputs.domain.scene;
+    Spectrum sum(0.0f);
+    if (scene.environment) {
+        sum += transmittance * environment_radiance(*scene.environment, domain.ray.d);
+    }
+    if (!inputs.lights.has_surfaces()) return sum;
+    inputs.lights.for_each_lamp_on_ray(domain.ray, [&](int index) {
+        const Light& light = scene.lights[static_cast<size_t>(index)];
+        const std::optional<LightHit> hit = hit_light(light, domain.ray.o, domain.ray.d);
+        if (hit) sum += transmittance_to(inputs.domain, domain, hit->distance) * hit->Le;
+    });
+    return sum;
+}
+
+Spectrum seen_emission(const PassInputs& inputs, const PixelDomain& domain, Rng& rng)
+{
+    Spectrum sum(0.0f);
+    for (const Volume& volume : inputs.domain.scene->media.volumes) {
+        if (!volume.emission_params.is_on()) continue;
+        sum += estimate_emission(volume, domain.ray, {0.0f, infinity}, rng, [&](float t, Vec3) {
+            return transmittance_to(inputs.domain, domain, t);
+        });
+    }
+    return sum;
+}
+
+/// The layers that belong to a first collision: one exact free flight stands for them.
+void add_first_collision(const PassInputs& inputs, const PixelDomain& domain, float u,
+                         FilmSample& sample)
+{
+    const Scene& scene = *inputs.domain.scene;
+    const AovSet& aovs = inputs.aovs;
+    const float depth = domain.bins.depth();
+    const float tau = -std::log1p(-u);
+    sample.collided = tau < depth;
+    float t = infinity;
+    if (sample.collided) {
+        const float* first = domain.bins.tau;
+        const auto above = std::upper_bound(first + 1, first + domain.bins.count, tau) - first;
+        const int k = static_cast<int>(above) - 1;
+        t = domain.bins.world_t(
+            invert_bin(scene.media, domain.ray, domain.bins, k, tau - domain.bins.tau[k]));
+        sample.depth = view_depth(scene.camera, domain.ray, t);
+        for_each_scatterer(scene.media, domain.ray.at(t), domain.ray.time,
+                           [&](const Volume& /*volume*/, float share, Spectrum albedo) {
+                               sample.albedo += share * albedo;
+                           });
+    }
+    if (aovs.needs_motion()) sample.motion = film_motion(scene, domain.ray, t);
+}
+
+}  // namespace
+
+void PassCounts::add(const PassCounts& other)
+{
+    bins.rays += other.bins.rays;
+    bins.cells += other.bins.cells;
+    bins.bins += other.bins.bins;
+    light_rays.rays += other.light_rays.rays;
+    light_rays.bricks += other.light_rays.bricks;
+    light_rays.cells += other.light_rays.cells;
+    candidates += other.candidates;
+    truncated += other.truncated;
+}
+
+Rng pass_rng(const PassInputs& inputs, const PassKey& key, Stream stream)
+{
+    const Scene& scene = *inputs.domain.scene;
+    return {inputs.render.seed, static_cast<uint32_t>(scene.frame), stream,
+            pixel_index(scene.camera, key), key.pass};
+}
+
+void begin_pass(const PassInputs& inputs, const PassKey& key, int owner, PixelDomain& domain,
+                LightRays& rays, FilmSample& sample, PassCounts& counts)
+{
+    const FrameDomain& frame = inputs.domain;
+    const Scene& scene = *frame.scene;
+    const PassSequence numbers = pass_numbers(inputs, key);
+    const Vec2 film = Vec2(key.x, key.y) + pair(numbers, NumberPair::Film);
+    const Camera& camera = scene.camera;
+    const Vec2 lens = camera.lens_radius > 0.0f ? pair(numbers, NumberPair::Lens) : Vec2(0.5f);
+    const bool is_open = scene.shutter_close > scene.shutter_open;
+    const float time = is_open ? pair(numbers, NumberPair::Time).x : 0.0f;
+    const Ray ray = generate_ray(camera, film, lens, time);
+    make_pixel_domain(frame, ray, domain, counts.bins);
+
+    const float depth = domain.bins.depth();
+    sample.transmittance = std::exp(-depth);
+    sample.optical_depth = depth;
+    sample.background = seen_background(inputs, domain, sample.transmittance);
+    if (frame.has_emission) {
+        Rng rng = pass_rng(inputs, key, Stream::Shade);
+        sample.emission = seen_emission(inputs, domain, rng);
+    }
+    if (domain.bins.empty() && !inputs.aovs.needs_motion()) return;
+    if (inputs.aovs.needs_first_collision()) {
+        add_first_collision(inputs, domain, pair(numbers, NumberPair::Flight).x, sample);
+    }
+    const int max_bounces = inputs.render.path.max_bounces;
+    if (domain.bins.empty() || max_bounces == 0) return;
+    Rng rng = pass_rng(inputs, key, Stream::Path);
+    const CorrectionPairs pairs{static_cast<uint32_t>(NumberPair::Distances),
+                                static_cast<uint32_t>(NumberPair::Directions),
+                                static_cast<uint32_t>(NumberPair::Choices)};
+    if (frame.params.control_variate) {
+        sample.direct =
+            scatter_infinite_lights(frame, ray, domain.bins, numbers, pairs, rng, owner, rays);
+    }
+    ++counts.truncated;
+    if (max_bounces > 1) {
+        const PathResult path = trace_path(scene, inputs.lights, inputs.render.path, ray, rng);
+        sample.indirect = path.indirect;
+        counts.truncated += path.truncated ? 0 : -1;
+    }
+}
+
+}  // namespace mote

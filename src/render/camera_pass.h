@@ -1,0 +1,51 @@
+#pragma once
+
+#include "core/sobol.h"
+#include "reference/light_sampler.h"
+#include "render/aov.h"
+#include "render/film.h"
+#include "restir/control_variate.h"
+#include "restir/pixel_domain.h"
+#include "scene/description.h"
+
+namespace mote {
+
+/// Pairs of a pixel's PassSequence.
+enum class NumberPair : uint32_t { Film, Lens, Time, Distances, Directions, Choices, Flight };
+
+/// What every pass of the ReSTIR estimator reads.
+struct PassInputs {
+    const FrameDomain& domain;
+    const RenderDescription& render;
+    AovSet aovs;
+    const LightSampler& lights;  ///< finds lamps that rays meet, and lights paths of many events
+};
+
+/// One pixel's pass: where, and which.
+struct PassKey {
+    int x = 0;
+    int y = 0;
+    uint32_t pass = 0;  ///< counts from 0 within the frame
+};
+
+/// Counts of work, for statistics.
+struct PassCounts {
+    BinCounts bins;
+    WalkCounts light_rays;
+    int64_t candidates = 0;
+    int64_t truncated = 0;  ///< passes whose light could have scattered on
+
+    void add(const PassCounts& other);
+};
+
+/// Draws the pixel's camera ray, tabulates the media along it and fills all parts of the sample
+/// that need no reservoir: background and alpha in closed form, emission by one point per brick
+/// with exact transmittance, lights at infinity by control variate (corrections go to `rays` under
+/// `owner`), two and more events by the path tracer. Pixels without smoke cost a bounds test.
+void begin_pass(const PassInputs& inputs, const PassKey& key, int owner, PixelDomain& domain,
+                LightRays& rays, FilmSample& sample, PassCounts& counts);
+
+/// The random numbers of one purpose in a pixel's pass.
+[[nodiscard]] Rng pass_rng(const PassInputs& inputs, const PassKey& key, Stream stream);
+
+}  // namespace mote

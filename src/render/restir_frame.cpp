@@ -1,0 +1,138 @@
+#include "render/restir_frame.h"
+
+#include <atomic>
+#include <mutex>
+
+#include "core/parallel.h"
+#include "render/restir_reuse.h"
+#include "restir/cache_stats.h"
+#include "restir/candidates.h"
+
+namespace mote {
+namespace {
+
+/// What one tile works with; allocated once per tile, reused over its passes.
+struct TileScratch {
+    LightRays rays;
+    std::vector<Candidate> candidates;
+    std::vector<FilmSample> samples;
+    std::vector<PixelFilm> pixels;
+    PixelDomain domain;
+};
+
+void trace_tile_pass(const PassInputs& inputs, const Tile& tile, uint32_t pass,
+                     TileScratch& scratch, PassCounts& counts)
+{
+    const FrameDomain& frame = inputs.domain;
+    scratch.rays.clear();
+    int owner = 0;
+    for (int y = tile.y0; y < tile.y1; ++y) {
+        for (int x = tile.x0; x < tile.x1; ++x, ++owner) {
+            const PassKey key{x, y, pass};
+            FilmSample& sample = scratch.samples[static_cast<size_t>(owner)];
+            sample = {};
+            begin_pass(inputs, key, owner, scratch.domain, scratch.rays, sample, counts);
+            const bool lit = frame.has_sampled_lights() && !scratch.domain.bins.empty() &&
+                             inputs.render.path.max_bounces > 0;
+            if (!lit) continue;
+            weigh_bins(frame, scratch.domain);
+            Rng rng = pass_rng(inputs, key, Stream::Initial);
+            scratch.candidates.clear();
+            draw_candidates(frame, scratch.domain, frame.params.candidates, rng,
+                            scratch.candidates);
+            counts.candidates += static_cast<int64_t>(scratch.candidates.size());
+            for (const Candidate& c : scratch.candidates) {
+                const Spectrum weight = c.f / c.density;
+                scratch.rays.add(owner, c.x, c.arrival.wi, c.arrival.distance,
+                                 scratch.domain.ray.time, weight,
+                                 depth_that_matters(weight, luminance(sample.L())));
+            }
+        }
+    }
+    scratch.rays.trace(frame.scene->media, counts.light_rays);
+    for (size_t i = 0; i < scratch.rays.size(); ++i) {
+        scratch.samples[static_cast<size_t>(scratch.rays.owners[i])].direct +=
+            scratch.rays.value(i);
+    }
+}
+
+int64_t pixel_passes(const RenderDescription& render)
+{
+    return int64_t{render.width} * render.height * render.samples;
+}
+
+/// The scene for as long as the frame takes; with reuse its samples must outlive the frame.
+std::shared_ptr<const Scene> share(const Scene& scene, bool is_kept)
+{
+    if (is_kept) return std::make_shared<const Scene>(scene);
+    return {std::shared_ptr<const Scene>(), &scene};
+}
+
+}  // namespace
+
+bool render_restir(const Scene& scene, const RenderDescription& render, const AovSet& aovs,
+                   const LightSampler& lights, const FrameControl& control,
+                   FrameHistory::Impl& history, Film& film, FrameStats& stats)
+{
+    const double cpu_start = process_cpu_seconds();
+    history.caches = make_light_caches(scene, {pixel_passes(render)}, history.caches);
+    stats.cache_cpu_seconds = process_cpu_seconds() - cpu_start;
+    const bool may_reuse = render.restir.reuse != ReuseMode::Off &&
+                           !(render.restir.reuse == ReuseMode::Auto && render.samples > 1);
+    const FrameDomain domain =
+        make_frame_domain(share(scene, may_reuse), history.caches, render.restir);
+    std::optional<Change> change;
+    if (history.last.scene) change = change_between(history.last, domain);
+    const ReusePlan plan = plan_reuse(domain, render, change);
+    const PassInputs inputs{domain, render, aovs, lights};
+    PassCounts counts;
+    const bool finished = plan.any() ? render_reusing_passes(inputs, plan, control, history.before,
+                                                             film, counts, stats.dropped_non_finite)
+                                     : render_independent_passes(inputs, control, film, counts,
+                                                                 stats.dropped_non_finite);
+    if (!plan.any()) history.before = {};
+    history.last = may_reuse ? domain : FrameDomain{};
+    stats.truncated_paths = counts.truncated;
+    stats.camera_rays = counts.bins.rays;
+    stats.light_rays = static_cast<int64_t>(counts.light_rays.rays);
+    stats.cells = counts.bins.cells + static_cast<int64_t>(counts.light_rays.cells);
+    stats.candidates = counts.candidates;
+    return finished;
+}
+
+bool render_independent_passes(const PassInputs& inputs, const FrameControl& control, Film& film,
+                               PassCounts& counts, int64_t& dropped)
+{
+    std::atomic<bool> stopped{false};
+    std::mutex mutex;
+    const Camera& camera = inputs.domain.scene->camera;
+    for_each_tile(camera.width, camera.height, [&](const Tile& tile) {
+        const auto pixels = static_cast<size_t>((tile.x1 - tile.x0) * (tile.y1 - tile.y0));
+        TileScratch scratch;
+        scratch.samples.resize(pixels);
+        scratch.pixels.resize(pixels);
+        PassCounts tile_counts;
+        int64_t tile_dropped = 0;
+        for (int pass = 0; pass < inputs.render.samples; ++pass) {
+            if (control.stop && control.stop()) stopped.store(true, std::memory_order_relaxed);
+            if (stopped.load(std::memory_order_relaxed)) return;
+            trace_tile_pass(inputs, tile, static_cast<uint32_t>(pass), scratch, tile_counts);
+            for (size_t i = 0; i < pixels; ++i) {
+                tile_dropped += scratch.pixels[i].add(scratch.samples[i]) ? 0 : 1;
+            }
+        }
+        size_t i = 0;
+        for (int y = tile.y0; y < tile.y1; ++y) {
+            for (int x = tile.x0; x < tile.x1; ++x) film.store(x, y, scratch.pixels[i++]);
+        }
+        {
+            const std::lock_guard<std::mutex> lock(mutex);
+            counts.add(tile_counts);
+            dropped += tile_dropped;
+        }
+        if (control.tile_done) control.tile_done();
+    });
+    return !stopped;
+}
+
+}  // namespace mote

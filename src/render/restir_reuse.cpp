@@ -1,0 +1,203 @@
+#include "render/restir_reuse.h"
+
+#include <atomic>
+#include <mutex>
+
+#include "restir/candidates.h"
+
+namespace mote {
+namespace {
+
+/// Whole-image buffers of a pass under way.
+struct PassBuffers {
+    PassBuffers(int width, int height)
+        : samples(width, height), current(width, height), next(width, height), colors(width, height)
+    {
+    }
+    Buffer2D<FilmSample> samples;
+    Buffer2D<PixelReservoir> current;
+    Buffer2D<PixelReservoir> next;
+    Buffer2D<Spectrum> colors;  ///< of the sampled lights
+};
+
+/// Everything of one frame's passes.
+struct ReusingFrame {
+    const PassInputs& inputs;
+    const FrameControl& control;
+    PassBuffers buffers;
+    std::atomic<bool> stopped{false};
+    std::mutex mutex;
+    PassCounts& counts;
+
+    ReusingFrame(const PassInputs& in, const FrameControl& c, PassCounts& n)
+        : inputs(in),
+          control(c),
+          buffers(in.domain.scene->camera.width, in.domain.scene->camera.height),
+          counts(n)
+    {
+    }
+
+    [[nodiscard]] bool must_stop()
+    {
+        if (control.stop && control.stop()) stopped.store(true, std::memory_order_relaxed);
+        return stopped.load(std::memory_order_relaxed);
+    }
+    [[nodiscard]] PixelRng rng(Stream stream, uint32_t pass) const
+    {
+        return [this, stream, pass](int x, int y) {
+            return pass_rng(inputs, {x, y, pass}, stream);
+        };
+    }
+    /// Calls f(tile, counts) for all tiles in parallel.
+    void for_tiles(const std::function<void(const Tile&, PassCounts&)>& f)
+    {
+        for_each_tile(buffers.colors.width(), buffers.colors.height(), [&](const Tile& tile) {
+            if (must_stop()) return;
+            PassCounts own;
+            f(tile, own);
+            const std::lock_guard<std::mutex> lock(mutex);
+            counts.add(own);
+        });
+    }
+    void fill_initial(const Tile& tile, uint32_t pass, DomainStore& domains, PassCounts& n);
+};
+
+/// Candidates of one pixel in a tile's list.
+struct CandidateRange {
+    size_t first = 0;
+    size_t count = 0;
+};
+
+void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, DomainStore& domains,
+                                PassCounts& n)
+{
+    const FrameDomain& frame = inputs.domain;
+    LightRays corrections;
+    LightRays shadows;
+    std::vector<Candidate> candidates;
+    std::vector<CandidateRange> ranges;
+    std::vector<FilmSample*> samples;
+    PixelDomain domain;
+    for (int y = tile.y0; y < tile.y1; ++y) {
+        for (int x = tile.x0; x < tile.x1; ++x) {
+            const PassKey key{x, y, pass};
+            FilmSample& sample = buffers.samples.at(x, y);
+            sample = {};
+            const auto owner = static_cast<int>(samples.size());
+            samples.push_back(&sample);
+            begin_pass(inputs, key, owner, domain, corrections, sample, n);
+            const size_t first = candidates.size();
+            if (!domain.bins.empty() && inputs.render.path.max_bounces > 0) {
+                weigh_bins(frame, domain);
+                Rng numbers = pass_rng(inputs, key, Stream::Initial);
+                draw_candidates(frame, domain, frame.params.candidates, numbers, candidates);
+            } else {
+                domain.bins.count = 0;  // no event on this ray
+            }
+            domains.store(x, y, domain);
+            ranges.push_back({first, candidates.size() - first});
+            for (size_t i = first; i < candidates.size(); ++i) {
+                const Candidate& c = candidates[i];
+                shadows.add(static_cast<int>(i), c.x, c.arrival.wi, c.arrival.distance,
+                            domain.ray.time, c.f, 104.0f);
+            }
+        }
+    }
+    n.candidates += static_cast<int64_t>(candidates.size());
+    corrections.trace(frame.scene->media, n.light_rays);
+    for (size_t i = 0; i < corrections.size(); ++i) {
+        samples[static_cast<size_t>(corrections.owners[i])]->direct += corrections.value(i);
+    }
+    shadows.trace(frame.scene->media, n.light_rays);
+    for (size_t i = 0; i < shadows.size(); ++i) {
+        candidates[static_cast<size_t>(shadows.owners[i])].f = shadows.value(i);
+    }
+    size_t pixel = 0;
+    for (int y = tile.y0; y < tile.y1; ++y) {
+        for (int x = tile.x0; x < tile.x1; ++x) {
+            const CandidateRange& range = ranges[pixel++];
+            Rng numbers = pass_rng(inputs, {x, y, pass}, Stream::Shade);
+            buffers.current.at(x, y) = resample({candidates.data() + range.first, range.count},
+                                                numbers, buffers.colors.at(x, y));
+        }
+    }
+}
+
+}  // namespace
+
+ReusePlan plan_reuse(const FrameDomain& domain, const RenderDescription& render,
+                     const std::optional<Change>& change)
+{
+    if (!domain.has_sampled_lights() || render.path.max_bounces == 0) return {};
+    switch (domain.params.reuse) {
+        case ReuseMode::Off:
+            return {};
+        case ReuseMode::Temporal:
+            return {true, false};
+        case ReuseMode::Spatial:
+            return {false, true};
+        case ReuseMode::Both:
+            return {true, true};
+        case ReuseMode::Auto:
+            return {render.samples == 1 && change && !change->any(), false};
+    }
+    return {};
+}
+
+bool render_reusing_passes(const PassInputs& inputs, const ReusePlan& plan,
+                           const FrameControl& control, FinishedPass& before, Film& film,
+                           PassCounts& counts, int64_t& dropped)
+{
+    const FrameDomain& frame = inputs.domain;
+    const int width = frame.scene->camera.width;
+    const int height = frame.scene->camera.height;
+    ReusingFrame run(inputs, control, counts);
+    PassBuffers& buffers = run.buffers;
+    Buffer2D<PixelFilm> pixels(width, height);
+    const bool matches =
+        !before.empty() && before.domains.width() == width && before.domains.height() == height;
+    if (!matches) before = {};
+    for (uint32_t pass = 0; pass < static_cast<uint32_t>(inputs.render.samples); ++pass) {
+        FinishedPass now{frame, DomainStore(width, height), Buffer2D<Reservoir>(width, height)};
+        run.for_tiles(
+            [&](const Tile& tile, PassCounts& n) { run.fill_initial(tile, pass, now.domains, n); });
+        const ReuseOutput out{buffers.next, buffers.colors};
+        if (plan.temporal && !before.empty()) {
+            const bool still = !change_between(before.frame, frame).any();
+            run.for_tiles([&](const Tile& tile, PassCounts& n) {
+                Combination scratch(temporal_rules(frame.params, still));
+                reuse_in_time({frame, now.domains, buffers.current}, before, still, tile,
+                              run.rng(Stream::Temporal, pass), scratch, out, n.light_rays);
+            });
+            std::swap(buffers.current, buffers.next);
+        }
+        const auto keep = [&] {
+            for (size_t i = 0; i < now.reservoirs.size(); ++i) {
+                now.reservoirs.data()[i] = buffers.current.data()[i].r;
+            }
+        };
+        if (!frame.params.spatial.feedback) keep();
+        if (plan.spatial) {
+            run.for_tiles([&](const Tile& tile, PassCounts& n) {
+                Combination scratch(spatial_rules(frame.params));
+                reuse_in_space({frame, now.domains, buffers.current}, tile,
+                               run.rng(Stream::Spatial, pass), scratch, out, n.light_rays);
+            });
+            std::swap(buffers.current, buffers.next);
+        }
+        if (frame.params.spatial.feedback) keep();
+        if (run.stopped) return false;
+        for (size_t i = 0; i < pixels.size(); ++i) {
+            FilmSample& sample = buffers.samples.data()[i];
+            sample.direct += buffers.colors.data()[i];
+            dropped += pixels.data()[i].add(sample) ? 0 : 1;
+        }
+        before = std::move(now);
+    }
+    for (int y = 0; y < height; ++y) {
+        for (int x = 0; x < width; ++x) film.store(x, y, pixels.at(x, y));
+    }
+    return true;
+}
+
+}  // namespace mote

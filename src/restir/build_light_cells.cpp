@@ -1,0 +1,286 @@
+#include <algorithm>
+
+#include "core/parallel.h"
+#include "restir/light_cells.h"
+#include "restir/light_cut.h"
+
+namespace mote {
+namespace {
+
+/// Blocks of 2^3 cells share one cut.
+constexpr int block_edge = 2;
+
+/// Mean of 1/d^2 over a cube of edge h around its centre is about 8/h^2.
+float blur2_of(float cell)
+{
+    return 0.125f * sqr(cell);
+}
+
+float mean_extinction(const CoarseExtinction& extinction, Vec3i c)
+{
+    const size_t level = std::min<size_t>(2, extinction.levels.size() - 1);
+    const CoarseExtinction::Level& data = extinction.levels[level];
+    const Vec3i p = c >> static_cast<int>(level);
+    const auto row = static_cast<size_t>(data.count.x);
+    return data.sigma_t[(static_cast<size_t>(p.z) * static_cast<size_t>(data.count.y) +
+                         static_cast<size_t>(p.y)) *
+                            row +
+                        static_cast<size_t>(p.x)];
+}
+
+/// The volume that scatters most at each cell, or at its neighbours if there is nothing; 0 if
+/// there is only one.
+class MainVolume {
+  public:
+    explicit MainVolume(const Media& media) : media_(media) {}
+
+    [[nodiscard]] uint32_t at(Vec3 centre, float cell) const
+    {
+        if (media_.volumes.size() < 2) return 0;
+        uint32_t found = 0;
+        float most = 0.0f;
+        for (size_t i = 0; i < media_.volumes.size(); ++i) {
+            const Volume& volume = media_.volumes[i];
+            if (!volume.density) continue;
+            const GridFrame frame = frames_at(volume, 0.5f).density;
+            float sum = 0.0f;
+            for (int n = 0; n < 9; ++n) {  // the centre and, around it, corners of a cube
+                const Vec3 corner(n & 1 ? 0.75f : -0.75f, n & 2 ? 0.75f : -0.75f,
+                                  n & 4 ? 0.75f : -0.75f);
+                const Vec3 p = n == 8 ? centre : centre + cell * corner;
+                sum += sample_local(*volume.density, Vec3(frame.point(p)));
+            }
+            sum *= volume.density_scale * luminance(volume.albedo);
+            if (sum > most) {
+                most = sum;
+                found = static_cast<uint32_t>(i);
+            }
+        }
+        return found;
+    }
+
+  private:
+    const Media& media_;
+};
+
+}  // namespace
+
+LightCells::LightCells(const Media& media, std::span<const LocalLight> lights, Vec3 eye,
+                       const LightCellsParams& params)
+    : clusters_(make_light_clusters(lights)), floor_share_(std::clamp(params.floor, 1e-3f, 1.0f))
+{
+    if (clusters_.ids.empty()) return;
+    everything_[1] = clusters_.light_count();
+    for (const Volume& volume : media.volumes) phases_.push_back(volume.phase);
+    const int most_clusters =
+        std::min(std::clamp(params.most_clusters, 1, 256), clusters_.light_count());
+    const size_t most_cells =
+        std::min(params.most_cells, params.most_entries / static_cast<size_t>(most_clusters));
+    const SmokeCells smoke =
+        find_smoke_cells(media, std::max(params.edge_voxels, 1.0f), most_cells);
+    if (smoke.smoke_count == 0) return;
+    const CoarseExtinction extinction = make_coarse_extinction(media, smoke);
+    LightCellsParams exact = params;
+    exact.most_clusters = most_clusters;
+    make_cells(media, smoke, exact, extinction);
+    fill_fluence(extinction);
+    set_eye(eye);
+}
+
+void LightCells::make_cells(const Media& media, const SmokeCells& smoke,
+                            const LightCellsParams& params, const CoarseExtinction& extinction)
+{
+    lattice_ = smoke.lattice;
+    cell_at_.assign(lattice_.size(), -1);
+    // In blocks, so that what shares a cut lies together.
+    const bool one_cut = clusters_.light_count() <= params.most_clusters;
+    std::vector<Vec3i> blocks;
+    const Vec3i block_count = (lattice_.count + (block_edge - 1)) / block_edge;
+    for (int bz = 0; bz < block_count.z; ++bz) {
+        for (int by = 0; by < block_count.y; ++by) {
+            for (int bx = 0; bx < block_count.x; ++bx) {
+                const size_t before = cells_.size();
+                for (int n = 0; n < 8; ++n) {
+                    const Vec3i c(2 * bx + (n & 1), 2 * by + (n >> 1 & 1), 2 * bz + (n >> 2));
+                    if (glm::any(glm::greaterThanEqual(c, lattice_.count))) continue;
+                    const size_t position = lattice_.index(c);
+                    if (smoke.marks[position] == SmokeCells::Empty) continue;
+                    cell_at_[position] = static_cast<int32_t>(cells_.size());
+                    Cell cell;
+                    cell.position = static_cast<uint32_t>(position);
+                    cell.cut = one_cut ? 0 : static_cast<uint32_t>(blocks.size());
+                    cells_.push_back(cell);
+                }
+                if (cells_.size() > before) blocks.emplace_back(bx, by, bz);
+            }
+        }
+    }
+    if (one_cut) blocks.resize(1);
+    make_cuts(extinction, blocks, params.most_clusters);
+    uint32_t entries = 0;
+    for (Cell& cell : cells_) {
+        cell.entry = entries;
+        entries += cuts_[cell.cut].count;
+    }
+    const MainVolume main_volume(media);
+    parallel_for(cells_.size(), 256, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            const Vec3 centre = lattice_.centre(lattice_.coordinates(cells_[i].position));
+            cells_[i].volume = main_volume.at(centre, lattice_.cell);
+            cells_[i].sigma_t =
+                mean_extinction(extinction, lattice_.coordinates(cells_[i].position));
+        }
+    });
+    fluence_.resize(entries);
+    cdf_.resize(entries);
+    scattered_.resize(cells_.size());
+}
+
+void LightCells::make_cuts(const CoarseExtinction& extinction, const std::vector<Vec3i>& blocks,
+                           int most_clusters)
+{
+    const auto most = static_cast<size_t>(most_clusters);
+    std::vector<int> found(blocks.size() * most);
+    cuts_.resize(blocks.size());
+    const float edge = block_edge * lattice_.cell;
+    parallel_for(blocks.size(), 16, [&](size_t begin, size_t end) {
+        std::vector<int> cut;
+        for (size_t i = begin; i < end; ++i) {
+            if (clusters_.light_count() <= most_clusters) {
+                cut.clear();
+                for (size_t n = 0; n < clusters_.nodes.size(); ++n)
+                    if (clusters_.nodes[n].is_leaf()) cut.push_back(static_cast<int>(n));
+            } else {
+                const Vec3 centre = lattice_.lo + edge * (Vec3(blocks[i]) + 0.5f);
+                choose_light_cut(clusters_, extinction, centre, 0.75f * edge, most_clusters, cut);
+            }
+            cuts_[i].count = static_cast<uint32_t>(cut.size());
+            std::copy(cut.begin(), cut.end(),
+                      found.begin() + static_cast<std::ptrdiff_t>(i * most));
+        }
+    });
+    for (size_t i = 0; i < cuts_.size(); ++i) {
+        Cut& cut = cuts_[i];
+        cut.first = static_cast<uint32_t>(nodes_.size());
+        for (size_t n = 0; n < cut.count; ++n) {
+            const int node = found[i * most + n];
+            nodes_.push_back(node);
+            begins_.push_back(clusters_.nodes[static_cast<size_t>(node)].begin);
+        }
+        nodes_.push_back(-1);
+        begins_.push_back(clusters_.light_count());
+    }
+}
+
+void LightCells::fill_fluence(const CoarseExtinction& extinction)
+{
+    const float blur2 = blur2_of(lattice_.cell);
+    parallel_for(cells_.size(), 64, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            const Cell& cell = cells_[i];
+            const Cut& cut = cuts_[cell.cut];
+            const Vec3 x = lattice_.centre(lattice_.coordinates(cell.position));
+            for (uint32_t n = 0; n < cut.count; ++n) {
+                const LightCluster& cluster =
+                    clusters_.nodes[static_cast<size_t>(nodes_[cut.first + n])];
+                const float tau = coarse_optical_depth(extinction, x, cluster.centre);
+                fluence_[cell.entry + n] = cluster_fluence(cluster, x, blur2) * std::exp(-tau);
+            }
+        }
+    });
+}
+
+void LightCells::set_eye(Vec3 eye)
+{
+    parallel_for(cells_.size(), 64, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) fill_cell(cells_[i], eye);
+    });
+    fill_inscatter();
+}
+
+void LightCells::fill_cell(const Cell& cell, Vec3 eye)
+{
+    const Vec3 x = lattice_.centre(lattice_.coordinates(cell.position));
+    const Cut& cut = cuts_[cell.cut];
+    const Phase& phase = phases_[cell.volume];
+    const float blur2 = blur2_of(lattice_.cell);
+    const Vec3 to_eye = eye - x;
+    const Vec3 wo = to_eye / std::max(glm::length(to_eye), 1e-30f);
+    float weight[256];
+    float total = 0.0f;
+    for (uint32_t n = 0; n < cut.count; ++n) {
+        const LightCluster& cluster = clusters_.nodes[static_cast<size_t>(nodes_[cut.first + n])];
+        const Vec3 to_light = cluster.centre - x;
+        const float distance2 = glm::dot(to_light, to_light);
+        const float wide2 = distance2 + cluster.spread2 + blur2;
+        const float inv_wide = 1.0f / std::sqrt(std::max(wide2, 1e-30f));
+        const float distance = std::sqrt(distance2);
+        // A lobe averaged over a range of directions of mean cosine a is about one of a times g.
+        const float a = distance * inv_wide;
+        const float cos_theta = -glm::dot(wo, to_light) / std::max(distance, 1e-30f);
+        float p = eval_hg(cos_theta, a * phase.g);
+        if (phase.weight_b > 0.0f) p += phase.weight_b * (eval_hg(cos_theta, a * phase.g_b) - p);
+        const float w = fluence_[cell.entry + n] * p;
+        weight[n] = w > 0.0f ? std::min(w, 1e30f) : 0.0f;
+        total += weight[n];
+    }
+    scattered_[static_cast<size_t>(cell_at_[cell.position])] = total;
+
+    const float known = total > 0.0f ? (1.0f - floor_share_) / total : 0.0f;
+    const float left_over = total > 0.0f ? floor_share_ : 1.0f;
+    const auto* sums = clusters_.share_sum.data();
+    const auto by_power =
+        static_cast<float>(0.5 * static_cast<double>(left_over) / clusters_.share_sum.back());
+    const float by_count = 0.5f * left_over / static_cast<float>(cut.count);
+    const int* begins = begins_.data() + cut.first;
+    double sum = 0.0;
+    float* cdf = cdf_.data() + cell.entry;
+    for (uint32_t n = 0; n < cut.count; ++n) {
+        const auto share = static_cast<float>(sums[begins[n + 1]] - sums[begins[n]]);
+        sum += static_cast<double>(known * weight[n] + by_power * share + by_count);
+        cdf[n] = static_cast<float>(std::min(sum, 1.0));
+    }
+    cdf[cut.count - 1] = 1.0f;
+}
+
+void LightCells::fill_inscatter()
+{
+    if (cells_.empty()) return;
+    double sum = 0.0;
+    for (const float s : scattered_) sum += static_cast<double>(s);
+    const auto mean = static_cast<float>(sum / static_cast<double>(cells_.size()));
+    least_inscatter_ = std::max(1e-6f * mean, 1e-20f);
+    inscatter_.assign(lattice_.size(), least_inscatter_);
+    const size_t strides[3] = {
+        1, static_cast<size_t>(lattice_.count.x),
+        static_cast<size_t>(lattice_.count.x) * static_cast<size_t>(lattice_.count.y)};
+    parallel_for(cells_.size(), 4096, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            const size_t position = cells_[i].position;
+            const Vec3i c = lattice_.coordinates(position);
+            float around = 0.0f;
+            float count = 0.0f;
+            const auto look = [&](size_t neighbour) {
+                const int32_t other = cell_at_[neighbour];
+                if (other < 0) return;
+                around += scattered_[static_cast<size_t>(other)];
+                count += 1.0f;
+            };
+            for (int axis = 0; axis < 3; ++axis) {
+                if (c[axis] > 0) look(position - strides[axis]);
+                if (c[axis] + 1 < lattice_.count[axis]) look(position + strides[axis]);
+            }
+            // A node may sit in a clump's shadow while smoke around it is bright.
+            const float floor = count > 0.0f ? 0.1f * around / count : 0.0f;
+            inscatter_[position] = std::max(std::max(scattered_[i], floor), least_inscatter_);
+        }
+    });
+}
+
+void LightCells::overwrite(const std::function<float(size_t)>& value, Vec3 eye)
+{
+    for (size_t i = 0; i < fluence_.size(); ++i) fluence_[i] = value(i);
+    set_eye(eye);
+}
+
+}  // namespace mote

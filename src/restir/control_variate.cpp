@@ -1,0 +1,264 @@
+#include "restir/control_variate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "restir/incident_light.h"
+#include "restir/mixed_phase.h"
+#include "restir/pixel_domain.h"
+#include "scene/environment.h"
+#include "volumes/media_at.h"
+
+namespace mote {
+namespace {
+
+/// Directions into an environment image: this share by the image, the rest by the phase function.
+constexpr float image_share = 0.5f;
+
+/// Media at an edge. Any mixture serves a control variate, so few parts are enough.
+struct Mixture {
+    static constexpr int capacity = 4;
+    struct Part {
+        const Volume* volume = nullptr;
+        float share = 0.0f;
+        Spectrum albedo{0.0f};
+    };
+    Part parts[capacity];
+    int count = 0;
+};
+
+struct EdgeLight {
+    Vec3 x{0.0f};
+    Mixture media;
+    Spectrum distant{0.0f};      ///< cached in-scattered radiance, albedo included
+    Spectrum environment{0.0f};  ///< likewise
+};
+
+/// An exact free flight on a binned ray, given that there is a collision.
+struct Flight {
+    int bin = 0;
+    float lambda = 0.0f;  ///< share of the bin's optical depth before it
+    Vec3 x{0.0f};
+};
+
+class InfiniteLights {
+  public:
+    InfiniteLights(const FrameDomain& frame, const Ray& ray, const RayBins& bins)
+        : frame_(frame), ray_(ray), bins_(bins), lost_(-std::expm1(-bins.depth()))
+    {
+        for (int k = 0; k <= bins.count; ++k) set_edge(k);
+    }
+
+    [[nodiscard]] Spectrum closed_form() const
+    {
+        Spectrum sum(0.0f);
+        for (int k = 0; k < bins_.count; ++k) {
+            const Vec2 weights = std::exp(-bins_.tau[k]) * linear_weights(bins_.depth_of_bin(k));
+            sum += weights.x * (edges_[k].distant + edges_[k].environment) +
+                   weights.y * (edges_[k + 1].distant + edges_[k + 1].environment);
+        }
+        return sum;
+    }
+
+    [[nodiscard]] Spectrum correct_distant(float u, float u_light, float share, int owner,
+                                           float pixel_luminance, LightRays& rays) const;
+    [[nodiscard]] Spectrum correct_environment(float u, Vec2 u_direction, float u_choice,
+                                               float share, int owner, float pixel_luminance,
+                                               Rng& rng, LightRays& rays) const;
+
+  private:
+    void set_edge(int k)
+    {
+        EdgeLight& edge = edges_[k];
+        edge.x = ray_.at(bins_.world_t(bins_.s[k]));
+        for_each_scatterer(frame_.scene->media, edge.x, ray_.time,
+                           [&](const Volume& volume, float share, Spectrum albedo) {
+                               if (edge.media.count == Mixture::capacity) return;
+                               edge.media.parts[edge.media.count++] = {&volume, share, albedo};
+                           });
+        // At the border of all media the mixture is that of the edge before.
+        if (edge.media.count == 0 && k > 0) edge.media = edges_[k - 1].media;
+        for (const LightCaches::Distant& distant : frame_.caches->distant) {
+            edge.distant += cached_distant(edge, distant);
+        }
+        if (frame_.caches->environment) edge.environment = cached_environment(edge);
+    }
+
+    [[nodiscard]] const DistantLight& lamp(const LightCaches::Distant& distant) const
+    {
+        return std::get<DistantLight>(frame_.scene->lights[static_cast<size_t>(distant.light)]);
+    }
+
+    [[nodiscard]] Spectrum cached_distant(const EdgeLight& edge,
+                                          const LightCaches::Distant& distant) const
+    {
+        const DistantLight& light = lamp(distant);
+        Spectrum scattering(0.0f);
+        for (int i = 0; i < edge.media.count; ++i) {
+            const Mixture::Part& part = edge.media.parts[i];
+            scattering += (part.share * eval_phase(part.volume->phase, -ray_.d, light.direction)) *
+                          part.albedo;
+        }
+        return scattering * light.irradiance * distant.map->transmittance(edge.x);
+    }
+
+    [[nodiscard]] Spectrum cached_environment(const EdgeLight& edge) const
+    {
+        Spectrum sum(0.0f);
+        for (int i = 0; i < edge.media.count; ++i) {
+            const Mixture::Part& part = edge.media.parts[i];
+            sum += part.share * part.albedo *
+                   frame_.caches->environment->inscatter(phase_index(part), edge.x);
+        }
+        return sum;
+    }
+
+    /// Per solid angle; its integral over wi is cached_environment.
+    [[nodiscard]] Spectrum cached_environment(const EdgeLight& edge, Vec3 wi) const
+    {
+        Spectrum sum(0.0f);
+        for (int i = 0; i < edge.media.count; ++i) {
+            const Mixture::Part& part = edge.media.parts[i];
+            sum += part.share * part.albedo *
+                   frame_.caches->environment->directional(phase_index(part), edge.x, -ray_.d, wi);
+        }
+        return sum;
+    }
+
+    [[nodiscard]] int phase_index(const Mixture::Part& part) const
+    {
+        const auto volume = part.volume - frame_.scene->media.volumes.data();
+        return frame_.caches->environment->phase_of(static_cast<size_t>(volume));
+    }
+
+    [[nodiscard]] Flight free_flight(float u) const
+    {
+        const float tau = std::min(-std::log1p(-u * lost_), bins_.depth());
+        const float* first = bins_.tau;
+        const auto above = std::upper_bound(first + 1, first + bins_.count, tau) - first;
+        Flight flight;
+        flight.bin = static_cast<int>(above) - 1;
+        const float depth = bins_.depth_of_bin(flight.bin);
+        const float within = tau - bins_.tau[flight.bin];
+        flight.lambda = depth > 0.0f ? std::clamp(within / depth, 0.0f, 1.0f) : 0.0f;
+        const float s = invert_bin(frame_.scene->media, ray_, bins_, flight.bin, within);
+        flight.x = ray_.at(bins_.world_t(s));
+        return flight;
+    }
+
+    const FrameDomain& frame_;
+    const Ray& ray_;
+    const RayBins& bins_;
+    float lost_;  ///< share of the light that collides on the ray
+    EdgeLight edges_[RayBins::capacity + 1];
+};
+
+/// Between the values at the near and the far edge.
+Spectrum between(Spectrum near, Spectrum far, float lambda)
+{
+    return near + lambda * (far - near);
+}
+
+Spectrum InfiniteLights::correct_distant(float u, float u_light, float share, int owner,
+                                         float pixel_luminance, LightRays& rays) const
+{
+    const auto& distant = frame_.caches->distant;
+    // One light per ray, in proportion to its irradiance.
+    float total = 0.0f;
+    for (const auto& d : distant) total += luminance(lamp(d).irradiance);
+    if (!(total > 0.0f)) return Spectrum(0.0f);
+    size_t i = 0;
+    float pmf = luminance(lamp(distant[0]).irradiance) / total;
+    for (float before = 0.0f; i + 1 < distant.size() && u_light >= before + pmf;) {
+        before += pmf;
+        pmf = luminance(lamp(distant[++i]).irradiance) / total;
+    }
+    if (!(pmf > 0.0f)) return Spectrum(0.0f);
+    const DistantLight& light = lamp(distant[i]);
+    const Flight flight = free_flight(u);
+    const float weight = share * lost_ / pmf;
+    const Spectrum f = weight * light.irradiance *
+                       scattering_at(frame_, flight.x, ray_.time, -ray_.d, light.direction);
+    rays.add(owner, flight.x, light.direction, infinity, ray_.time, f,
+             depth_that_matters(f, pixel_luminance));
+    const EdgeLight& near = edges_[flight.bin];
+    const EdgeLight& far = edges_[flight.bin + 1];
+    if (distant.size() == 1) return -weight * between(near.distant, far.distant, flight.lambda);
+    return -weight * between(cached_distant(near, distant[i]), cached_distant(far, distant[i]),
+                             flight.lambda);
+}
+
+Spectrum InfiniteLights::correct_environment(float u, Vec2 u_direction, float u_choice, float share,
+                                             int owner, float pixel_luminance, Rng& rng,
+                                             LightRays& rays) const
+{
+    const EnvironmentLight& environment = *frame_.scene->environment;
+    const Flight flight = free_flight(u);
+    const Vec3 wo = -ray_.d;
+    const MixedPhase phase = mixed_phase_at(frame_.scene->media, flight.x, ray_.time);
+    if (phase.empty()) return Spectrum(0.0f);
+    const float by_image = environment.map ? image_share : 0.0f;
+    Vec3 wi;
+    if (u_choice < by_image) {
+        const std::optional<LightSample> sample = sample_environment(environment, rng);
+        if (!sample) return Spectrum(0.0f);
+        wi = sample->wi;
+    } else {
+        wi = phase.sample(wo, (u_choice - by_image) / (1.0f - by_image), u_direction);
+    }
+    const float pdf = (1.0f - by_image) * phase.pdf(wo, wi) +
+                      (by_image > 0.0f ? by_image * environment_pdf(environment, wi) : 0.0f);
+    if (!(pdf > 0.0f)) return Spectrum(0.0f);
+    const float weight = share * lost_ / pdf;
+    const Spectrum f = weight * environment_radiance(environment, wi) *
+                       scattering_at(frame_, flight.x, ray_.time, wo, wi);
+    rays.add(owner, flight.x, wi, infinity, ray_.time, f, depth_that_matters(f, pixel_luminance));
+    return -weight * between(cached_environment(edges_[flight.bin], wi),
+                             cached_environment(edges_[flight.bin + 1], wi), flight.lambda);
+}
+
+}  // namespace
+
+Spectrum scatter_infinite_lights(const FrameDomain& frame, const Ray& ray, const RayBins& bins,
+                                 const PassSequence& numbers, const CorrectionPairs& pairs,
+                                 Rng& rng, int owner, LightRays& rays)
+{
+    const LightCaches& caches = *frame.caches;
+    if (bins.empty() || (caches.distant.empty() && !caches.environment)) return Spectrum(0.0f);
+    const InfiniteLights lights(frame, ray, bins);
+    Spectrum sum = lights.closed_form();
+    if (!frame.params.corrections) return sum;
+    const float known = luminance(sum);
+    const Vec2 distance = numbers.pair(pairs.distances);
+    const Vec2 direction = numbers.pair(pairs.directions);
+    // One light, no image: nothing to choose.
+    const bool chooses = caches.distant.size() > 1 ||
+                         (frame.scene->environment && frame.scene->environment->map);
+    const Vec2 choice = chooses ? numbers.pair(pairs.choices) : Vec2(0.5f);
+    // Several rays of one pass form a lattice, shifted by the pass's own numbers.
+    const auto shifted = [](float u, float step) {
+        const float v = u + step;
+        return std::min(v - std::floor(v), one_minus_epsilon);
+    };
+    const int distant_rays = caches.distant.empty() ? 0 : frame.params.distant_rays;
+    for (int i = 0; i < distant_rays; ++i) {
+        const float share = 1.0f / static_cast<float>(distant_rays);
+        const float step = static_cast<float>(i) * share;
+        sum += lights.correct_distant(shifted(distance.x, step),
+                                      shifted(choice.x, 0.618034f * static_cast<float>(i)), share,
+                                      owner, known, rays);
+    }
+    const int environment_rays = caches.environment ? frame.params.environment_rays : 0;
+    for (int i = 0; i < environment_rays; ++i) {
+        const auto n = static_cast<float>(i);
+        const float share = 1.0f / static_cast<float>(environment_rays);
+        const Vec2 u(shifted(direction.x, 0.754877666f * n),
+                     shifted(direction.y, 0.569840296f * n));
+        sum += lights.correct_environment(shifted(distance.y, n * share), u,
+                                          shifted(choice.y, 0.618034f * n), share, owner, known,
+                                          rng, rays);
+    }
+    return sum;
+}
+
+}  // namespace mote

@@ -1,0 +1,126 @@
+#include "restir/light_caches.h"
+
+#include <algorithm>
+
+#include "restir/media_extent.h"
+
+namespace mote {
+namespace {
+
+bool is_same(const LocalLight& a, const LocalLight& b)
+{
+    return a.id == b.id && a.position == b.position && a.spread2 == b.spread2 &&
+           a.facing == b.facing && a.power == b.power;
+}
+
+bool is_same(const EnvironmentLight& a, const EnvironmentLight& b)
+{
+    return a.radiance == b.radiance && a.map == b.map && a.map_from_world == b.map_from_world;
+}
+
+Vec3 camera_position(const Camera& camera)
+{
+    return Vec3(camera.world_from_camera.at(cache_time).translate);
+}
+
+/// What is built now and what the frame before had.
+struct Builder {
+    const Scene& scene;
+    const CacheSizes& sizes;
+    const LightCaches* previous;  ///< null: nothing can be taken over
+    bool same_media;
+    LightCaches& out;
+
+    void add_distant() const;
+    void add_environment() const;
+    void add_local() const;
+};
+
+void Builder::add_distant() const
+{
+    for (size_t i = 0; i < scene.lights.size(); ++i) {
+        const auto* lamp = std::get_if<DistantLight>(&scene.lights[i]);
+        if (!lamp || !(max_component(lamp->irradiance) > 0.0f)) continue;
+        LightCaches::Distant distant{static_cast<int>(i), lamp->direction, nullptr};
+        if (same_media) {
+            for (const LightCaches::Distant& old : previous->distant) {
+                if (old.direction == lamp->direction) distant.map = old.map;
+            }
+        }
+        distant.map ? ++out.reused : ++out.built;
+        if (!distant.map) {
+            distant.map = std::make_shared<TransmittanceMap>(scene.media, lamp->direction);
+        }
+        out.distant.push_back(std::move(distant));
+    }
+}
+
+void Builder::add_environment() const
+{
+    if (!scene.environment || !(max_component(scene.environment->radiance) > 0.0f)) return;
+    out.environment_light = *scene.environment;
+    DirectionTransmittanceParams params;
+    if (sizes.pixel_passes < 100'000) {
+        params.hats = {4, 8};
+        params.node_spacing = 8.0f * finest_voxel(scene.media);
+    }
+    if (same_media) out.directions = previous->directions;
+    out.directions ? ++out.reused : ++out.built;
+    if (!out.directions) {
+        out.directions = std::make_shared<DirectionTransmittance>(scene.media, params);
+    }
+    const bool same_light = previous && previous->environment &&
+                            is_same(previous->environment_light, *scene.environment) &&
+                            previous->environment_radiance.size() ==
+                                static_cast<size_t>(out.directions->hats().count());
+    out.environment_radiance = same_light
+                                   ? previous->environment_radiance
+                                   : mean_radiance(*scene.environment, out.directions->hats());
+    out.environment.emplace(out.directions, out.environment_radiance, scene.media,
+                            camera_position(scene.camera));
+}
+
+void Builder::add_local() const
+{
+    out.local_lights = local_lights(scene.lights);
+    out.emissive.resize(scene.media.volumes.size());
+    int id = static_cast<int>(scene.lights.size());
+    for (size_t i = 0; i < scene.media.volumes.size(); ++i) {
+        const Volume& volume = scene.media.volumes[i];
+        if (!volume.emission_params.is_on()) continue;
+        EmissiveBricks bricks = make_emissive_bricks(volume);
+        if (bricks.empty() || !(bricks.total_power > 0.0)) continue;
+        add_emissive_volume(volume, bricks, id++, out.local_lights);
+        out.emissive[i] = std::move(bricks);
+    }
+    if (out.local_lights.empty()) return;
+    const Vec3 eye = camera_position(scene.camera);
+    const bool same = same_media && previous->cells &&
+                      std::equal(out.local_lights.begin(), out.local_lights.end(),
+                                 previous->local_lights.begin(), previous->local_lights.end(),
+                                 [](const auto& a, const auto& b) { return is_same(a, b); });
+    same ? ++out.reused : ++out.built;
+    if (same) {
+        out.cells = previous->cells;
+        out.cells->set_eye(eye);
+    } else {
+        out.cells.emplace(scene.media, out.local_lights, eye);
+    }
+}
+
+}  // namespace
+
+std::shared_ptr<const LightCaches> make_light_caches(
+    const Scene& scene, const CacheSizes& sizes, const std::shared_ptr<const LightCaches>& previous)
+{
+    auto out = std::make_shared<LightCaches>();
+    out->media = media_key(scene.media);
+    const bool same_media = previous && previous->media == out->media;
+    const Builder builder{scene, sizes, previous.get(), same_media, *out};
+    builder.add_distant();
+    builder.add_environment();
+    builder.add_local();
+    return out;
+}
+
+}  // namespace mote

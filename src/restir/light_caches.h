@@ -1,0 +1,53 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "restir/environment_cache.h"
+#include "restir/light_cells.h"
+#include "restir/local_light.h"
+#include "restir/media_key.h"
+#include "restir/transmittance_map.h"
+#include "scene/scene.h"
+
+namespace mote {
+
+/// What is known beforehand about the light in a frame's media, in parts that exist only if the
+/// scene has such lights. Caches shape proposals, targets and control variates: wrong or stale
+/// values cost variance, never bias.
+struct LightCaches {
+    struct Distant {
+        int light = -1;  ///< into Scene::lights
+        Vec3 direction{0.0f};
+        std::shared_ptr<const TransmittanceMap> map;
+    };
+    std::vector<Distant> distant;
+    std::optional<EnvironmentCache> environment;
+    std::optional<LightCells> cells;                      ///< of lamps and emissive volumes
+    std::vector<std::optional<EmissiveBricks>> emissive;  ///< of each volume; empty: does not glow
+
+    // What they were made from, to tell whether they may stay.
+    MediaKey media;
+    std::vector<LocalLight> local_lights;
+    std::vector<Spectrum> environment_radiance;  ///< mean_radiance()
+    EnvironmentLight environment_light;
+    std::shared_ptr<const DirectionTransmittance> directions;
+    int built = 0;   ///< parts made for this frame
+    int reused = 0;  ///< parts taken over from the frame before
+};
+
+/// How fine caches are.
+struct CacheSizes {
+    /// Pixels times passes that will use the caches: few of them are not worth fine caches.
+    int64_t pixel_passes = 1'000'000;
+};
+
+/// Caches for a frame. Parts whose media and lights are those of `previous` (may be null) are taken
+/// over from it. Cost: LightCaches is empty without media; about 0.1 s for a distant light and an
+/// environment around 128 x 256 x 128 voxels of smoke, in parallel.
+[[nodiscard]] std::shared_ptr<const LightCaches> make_light_caches(
+    const Scene& scene, const CacheSizes& sizes,
+    const std::shared_ptr<const LightCaches>& previous);
+
+}  // namespace mote

@@ -1,0 +1,39 @@
+#include "restir/light_rays.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace mote {
+
+void LightRays::clear()
+{
+    queries.clear();
+    weights.clear();
+    owners.clear();
+}
+
+void LightRays::add(int owner, Vec3 x, Vec3 wi, float distance, float time, Spectrum weight,
+                    float tau_max)
+{
+    if (!(max_component(glm::abs(weight)) > 0.0f)) return;
+    queries.push_back({x, distance, wi, time, tau_max});
+    weights.push_back(weight);
+    owners.push_back(owner);
+}
+
+void LightRays::trace(const Media& media, WalkCounts& counts)
+{
+    depths.resize(queries.size());
+    optical_depths(media, queries, depths, counts);
+}
+
+float depth_that_matters(Spectrum weight, float pixel_luminance)
+{
+    constexpr float deepest = 104.0f;  // a float's exp(-tau) is 0 beyond
+    if (!(pixel_luminance > 0.0f)) return deepest;
+    const float ratio = 1e7f * max_component(glm::abs(weight)) / pixel_luminance;
+    if (!(ratio < 1e30f)) return deepest;
+    return std::clamp(std::log(std::max(ratio, 1.0f)), 4.0f, deepest);
+}
+
+}  // namespace mote

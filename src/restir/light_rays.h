@@ -1,0 +1,33 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "volumes/depth_batch.h"
+
+namespace mote {
+
+/// Rays towards lights, gathered over a tile and traced together. Each brings weight * T to its
+/// owner (a pixel of the tile, or a term of one), T the exact transmittance of its segment.
+struct LightRays {
+    std::vector<DepthQuery> queries;
+    std::vector<Spectrum> weights;
+    std::vector<int> owners;
+    std::vector<float> depths;  ///< filled by trace
+
+    void clear();
+    /// A ray from x along wi. Rays whose weight is black are left out.
+    void add(int owner, Vec3 x, Vec3 wi, float distance, float time, Spectrum weight,
+             float tau_max);
+    void trace(const Media& media, WalkCounts& counts);
+    [[nodiscard]] size_t size() const { return queries.size(); }
+    /// What ray i brings.
+    [[nodiscard]] Spectrum value(size_t i) const { return weights[i] * std::exp(-depths[i]); }
+};
+
+/// Optical depth beyond which a contribution is below 1e-7 of the pixel: what it would bring
+/// without anything in the way, against what the pixel is known to have. Never below 4, and where
+/// the pixel is not known to have anything, as deep as floats go.
+[[nodiscard]] float depth_that_matters(Spectrum weight, float pixel_luminance);
+
+}  // namespace mote

@@ -1,0 +1,138 @@
+#include "restir/reuse_passes.h"
+
+#include <cmath>
+
+namespace mote {
+namespace {
+
+/// Confidence that history may have: long where nothing moves, short where targets change (caps of
+/// 20 in motion made noise worse than no reuse, in both prototypes).
+constexpr float still_cap = 16.0f;
+constexpr float moving_cap = 3.0f;
+
+float cap_of(const TemporalParams& params, bool still)
+{
+    if (params.cap > 0.0f) return params.cap;
+    return still ? still_cap : moving_cap;
+}
+
+/// Runs finish for all pixels of a tile, in order.
+void finish_tile(const Tile& tile, const PixelRng& rng, const Combination& combination,
+                 const ReuseOutput& out)
+{
+    int pixel = 0;
+    for (int y = tile.y0; y < tile.y1; ++y) {
+        for (int x = tile.x0; x < tile.x1; ++x) {
+            Rng numbers = rng(x, y);
+            out.reservoirs.at(x, y) = combination.finish(pixel++, numbers, out.colors.at(x, y));
+        }
+    }
+}
+
+}  // namespace
+
+CombineRules temporal_rules(const RestirParams& params, bool still)
+{
+    CombineRules rules{params.shift, MisForm::Pairwise};
+    switch (params.mis) {
+        case ReuseMis::Auto:
+            // Measured: balance has half the noise at rest, the defensive form in motion.
+            rules.mis = still ? MisForm::Balance : MisForm::Pairwise;
+            break;
+        case ReuseMis::Balance:
+            rules.mis = MisForm::Balance;
+            break;
+        case ReuseMis::Pairwise:
+            break;
+        case ReuseMis::Constant:
+            rules.mis = MisForm::Constant;
+            break;
+    }
+    return rules;
+}
+
+CombineRules spatial_rules(const RestirParams& params)
+{
+    return {params.shift, params.mis == ReuseMis::Constant ? MisForm::Constant : MisForm::Pairwise};
+}
+
+void reuse_in_time(const PassView& pass, const FinishedPass& before, bool still, const Tile& tile,
+                   const PixelRng& rng, Combination& scratch, const ReuseOutput& out,
+                   WalkCounts& counts)
+{
+    const RestirParams& params = pass.frame.params;
+    scratch.clear();
+    PixelDomain own;
+    PixelDomain earlier;
+    for (int y = tile.y0; y < tile.y1; ++y) {
+        for (int x = tile.x0; x < tile.x1; ++x) {
+            scratch.begin_pixel(pass.reservoirs.at(x, y));
+            pass.domains.load(x, y, own);
+            if (!(own.Z() > 0.0f)) continue;
+            const auto from = previous_pixel(before.frame, pass.frame, own, !still);
+            if (!from) continue;
+            before.domains.load(from->x, from->y, earlier);
+            const RayMap map = make_ray_map(earlier.ray, own.ray, from->motion);
+            if (!map.is_usable()) continue;
+            const Reservoir& history = before.reservoirs.at(from->x, from->y);
+            const float agreement = still ? 1.0f
+                                          : profile_agreement(own.bins, earlier.bins, map.inverse(),
+                                                              params.temporal.validation);
+            const float confidence =
+                agreement * std::min(history.M, cap_of(params.temporal, still));
+            if (!(confidence > 0.0f)) continue;
+            Reservoir aged = history;
+            aged.age += 1.0f;
+            scratch.add_other({pass.frame, own}, {before.frame, earlier}, aged, confidence, map);
+        }
+    }
+    scratch.trace(pass.frame.scene->media, before.frame.scene->media, counts);
+    finish_tile(tile, rng, scratch, out);
+}
+
+void reuse_in_space(const PassView& pass, const Tile& tile, const PixelRng& rng,
+                    Combination& scratch, const ReuseOutput& out, WalkCounts& counts)
+{
+    MOTE_ASSERT(&out.reservoirs != &pass.reservoirs);
+    const SpatialParams& params = pass.frame.params.spatial;
+    scratch.clear();
+    PixelDomain own;
+    PixelDomain other;
+    for (int y = tile.y0; y < tile.y1; ++y) {
+        for (int x = tile.x0; x < tile.x1; ++x) {
+            scratch.begin_pixel(pass.reservoirs.at(x, y));
+            pass.domains.load(x, y, own);
+            if (!(own.Z() > 0.0f)) continue;
+            Rng numbers = rng(x, y);
+            const float turn = 2.0f * pi * numbers.uniform();
+            for (int i = 0; i < params.neighbours; ++i) {
+                // Vogel's spiral: even in area, at the golden angle.
+                const float share =
+                    (static_cast<float>(i) + 0.5f) / static_cast<float>(params.neighbours);
+                const float radius = std::max(1.0f, params.radius_px * std::sqrt(share));
+                const float angle = turn + 2.39996323f * static_cast<float>(i);
+                const int nx = x + static_cast<int>(std::lround(radius * std::cos(angle)));
+                const int ny = y + static_cast<int>(std::lround(radius * std::sin(angle)));
+                if (nx < 0 || ny < 0 || nx >= pass.domains.width() || ny >= pass.domains.height()) {
+                    continue;
+                }
+                if ((nx == x && ny == y) || !(pass.domains.depth(nx, ny) > 0.0f)) continue;
+                pass.domains.load(nx, ny, other);
+                const Reservoir& reservoir = pass.reservoirs.at(nx, ny).r;
+                scratch.add_other({pass.frame, own}, {pass.frame, other}, reservoir, reservoir.M,
+                                  make_ray_map(other.ray, own.ray, Vec3(0.0f)));
+            }
+        }
+    }
+    scratch.trace(pass.frame.scene->media, pass.frame.scene->media, counts);
+    finish_tile(
+        tile,
+        [&](int x, int y) {
+            Rng numbers = rng(x, y);
+            (void)numbers.uniform();  // the spiral's turn
+            return numbers;
+        },
+        scratch, out);
+}
+
+}  // namespace mote

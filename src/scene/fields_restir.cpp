@@ -1,0 +1,98 @@
+#include "scene/fields.h"
+
+namespace mote {
+namespace {
+
+constexpr std::array reuse_names = {"auto", "off", "temporal", "spatial", "both"};
+constexpr std::array shift_names = {"random_numbers", "world", "fraction"};
+constexpr std::array mis_names = {"auto", "pairwise", "balance", "constant"};
+constexpr std::array visibility_names = {"exact", "cached"};
+
+}  // namespace
+
+void describe(FieldVisitor& v, RestirParams& restir)
+{
+    visit_choice(v,
+                 {.key = "reuse",
+                  .doc = "Reservoirs that a pixel combines with its own; auto decides per frame "
+                         "from what changed and what is accumulated"},
+                 restir.reuse, reuse_names);
+    visit(v,
+          {.key = "candidates",
+           .doc = "Distances and lights tried per pixel and pass, for lamps and glowing media; one "
+                  "exact shadow ray each",
+           .range = between(1, 256)},
+          restir.candidates);
+    visit(
+        v,
+        {.key = "control_variate",
+         .doc = "Distant lights and the environment by closed form plus exact corrections; false: "
+                "they take part in the candidates"},
+        restir.control_variate);
+    visit(v,
+          {.key = "distant_rays",
+           .doc = "Exact corrections per pixel and pass towards distant lights",
+           .range = between(1, 64)},
+          restir.distant_rays);
+    visit(v,
+          {.key = "environment_rays",
+           .doc = "Exact corrections per pixel and pass into the environment",
+           .range = between(1, 64)},
+          restir.environment_rays);
+    visit(v,
+          {.key = "corrections",
+           .doc = "false: distant lights and the environment by closed form alone, without noise "
+                  "and fast, but biased by the light caches' coarseness (a few percent)"},
+          restir.corrections);
+    visit_choice(v,
+                 {.key = "shift",
+                  .doc = "What a reused sample keeps: its random numbers, its place in the moving "
+                         "medium (world), or the share of light lost before it (fraction)"},
+                 restir.shift, shift_names);
+    visit_choice(v,
+                 {.key = "mis",
+                  .doc = "Weights between reservoirs; constant is biased where smoke does not "
+                         "overlap: for study"},
+                 restir.mis, mis_names);
+    visit_choice(v,
+                 {.key = "visibility",
+                  .doc = "Shadows in the target function: exact rays, or the light caches with an "
+                         "exact ray for the chosen sample"},
+                 restir.visibility, visibility_names);
+    visit_table(v, {.key = "temporal", .doc = "Reuse of the pass before"}, restir.temporal);
+    visit_table(v, {.key = "spatial", .doc = "Reuse of neighbours"}, restir.spatial);
+}
+
+void describe(FieldVisitor& v, TemporalParams& temporal)
+{
+    visit(v,
+          {.key = "cap",
+           .doc = "Most confidence that history may have; 0: 16 at rest, 3 in motion",
+           .unit = "passes",
+           .range = between(0, 10'000)},
+          temporal.cap);
+    visit(v,
+          {.key = "validation",
+           .doc = "How strongly history loses confidence where the smoke along the ray has "
+                  "changed; 0: not at all",
+           .range = between(0, 1000)},
+          temporal.validation);
+}
+
+void describe(FieldVisitor& v, SpatialParams& spatial)
+{
+    visit(v,
+          {.key = "neighbours",
+           .doc = "Reservoirs taken from around; two shadow rays each",
+           .range = between(0, 16)},
+          spatial.neighbours);
+    visit(v,
+          {.key = "radius",
+           .doc = "Of the disk they are taken from",
+           .unit = "pixels",
+           .range = between(0.5, 256)},
+          spatial.radius_px);
+    visit(v, {.key = "feedback", .doc = "The result becomes history"}, spatial.feedback);
+}
+
+}  // namespace mote

@@ -1,0 +1,65 @@
+#pragma once
+
+namespace mote {
+
+/// Which reservoirs a pixel combines with its own.
+enum class ReuseMode {
+    Auto,      ///< decided per frame from what changed and what is accumulated
+    Off,       ///< none: independent passes
+    Temporal,  ///< that of the pixel it came from, one pass ago
+    Spatial,   ///< those of neighbours
+    Both,
+};
+
+/// How a sample travels from one pixel's domain to another's.
+enum class ShiftKind {
+    RandomNumbers,  ///< keeps the random number of the distance: Jacobian 1, equal supports
+    World,          ///< keeps the point, moved by the medium's velocity, projected on the new ray
+    Fraction,       ///< keeps the share of the ray's light that is lost before the point
+};
+
+/// Weights between the reservoirs that could have made a sample.
+enum class ReuseMis {
+    Auto,      ///< Balance for one input where nothing moved, Pairwise otherwise
+    Pairwise,  ///< defensive pairwise: linear in the inputs, bounded in motion
+    Balance,   ///< generalised balance heuristic: quadratic in the inputs
+    Constant,  ///< confidence alone; biased where supports differ: for study
+};
+
+/// What the target function knows about shadows.
+enum class TargetVisibility {
+    Exact,   ///< closed-form transmittance, a ray per evaluation; nothing left to shade
+    Cached,  ///< from the light caches; the chosen sample is shaded exactly
+};
+
+/// Reuse of the reservoir that a pixel had one pass ago.
+struct TemporalParams {
+    float cap = 0.0f;  ///< most confidence a history may have [passes]; 0: 16 at rest, 3 in motion
+    float validation = 1.0f;  ///< history's confidence falls with the change of its optical-depth
+                              ///< profile, this strongly; 0: not at all
+};
+
+/// Reuse of neighbours' reservoirs.
+struct SpatialParams {
+    int neighbours = 3;      ///< [0, 16]; two shadow rays each
+    float radius_px = 3.0f;  ///< of the disk they are taken from [px]
+    bool feedback = false;   ///< the result becomes the next pass's history
+};
+
+/// How the volumetric ReSTIR estimator samples. Unbiased unless a field says otherwise.
+struct RestirParams {
+    ReuseMode reuse = ReuseMode::Auto;
+    int candidates = 8;           ///< distances and lights tried per pixel and pass, [1, 256]
+    bool control_variate = true;  ///< lights at infinity by closed form plus exact corrections;
+                                  ///< else they take part in the candidates
+    int distant_rays = 2;         ///< exact corrections per pass towards distant lights
+    int environment_rays = 4;     ///< and into the environment
+    bool corrections = true;      ///< false: the closed form alone, a fast biased preview
+    ShiftKind shift = ShiftKind::RandomNumbers;
+    ReuseMis mis = ReuseMis::Auto;
+    TargetVisibility visibility = TargetVisibility::Exact;
+    TemporalParams temporal;
+    SpatialParams spatial;
+};
+
+}  // namespace mote

@@ -1,0 +1,282 @@
+#include "volumes/ray_bins.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "volumes/collisions.h"
+
+namespace mote {
+namespace {
+
+/// A bin is closed when transmittance has dropped by this much since its near edge.
+constexpr float transmittance_step = 0.04f;
+/// Cells per bin, unless the ray is so long that the bins would run out.
+constexpr int cells_per_bin = 4;
+/// Edges closer than this share of a cell's size are one edge: rounding, not gaps.
+constexpr float gap = 1e-4f;
+
+/// The part of a local ray between two distances, re-based to the first.
+LocalRay part_of(const LocalRay& ray, float s0, float s1)
+{
+    LocalRay part = ray;
+    part.o = ray.at(s0);
+    part.s1 = s1 - s0;
+    part.t0 = ray.t0 + static_cast<double>(s0);
+    return part;
+}
+
+/// Appends edges to a table; the last slot stays free for the far end.
+struct BinWriter {
+    RayBins& bins;
+    int cells_in_bin = 0;
+    float limit = transmittance_step;  ///< depth at which the open bin is closed
+
+    [[nodiscard]] bool is_full() const { return bins.count >= RayBins::capacity - 1; }
+
+    /// Closes the open bin at distance s.
+    void close(float s, float tau)
+    {
+        ++bins.count;
+        bins.s[bins.count] = s;
+        bins.tau[bins.count] = tau;
+        cells_in_bin = 0;
+        // Nothing is gained from thin bins where hardly any light gets to.
+        limit = tau < 7.0f ? tau + transmittance_step * std::exp(tau) : infinity;
+    }
+};
+
+/// Bins of one medium. Returns the ray in its grid, for later lookups.
+void bin_one(const Volume& volume, const Ray& ray, float cut, RayBins& bins, BinCounts& counts)
+{
+    bins.count = 0;
+    const BrickGrid& grid = *volume.density;
+    const LocalRay local = density_ray(volume, ray, {0.0f, infinity});
+    if (local.misses()) return;
+    bins.t0 = local.t0;
+    const float scale = volume.density_scale;
+    const float depth_cut = cut > 0.0f ? -std::log(cut) : infinity;
+    const Vec3 speed = glm::abs(local.d);
+    const float crossings = local.s1 * (speed.x + speed.y + speed.z);
+    const float tolerance = gap / std::max({speed.x, speed.y, speed.z});
+    const int cells_max =
+        std::max(cells_per_bin, static_cast<int>(crossings / (RayBins::capacity - 16)) + 1);
+    BinWriter out{bins};
+    float tau = 0.0f;
+    float end = 0.0f;  // of the last stretch that was added
+    bool started = false;
+    int64_t cells = 0;
+    // A stretch that holds something; what lies before it is a gap if it does not join on.
+    const auto open_at = [&](float s) {
+        if (!started) {
+            started = true;
+            bins.s[0] = s;
+            bins.tau[0] = 0.0f;
+        } else if (s > end + tolerance && !out.is_full()) {
+            if (out.cells_in_bin > 0) out.close(end, tau);
+            if (!out.is_full()) out.close(s, tau);
+        }
+    };
+    for_each_brick(grid, local, [&](const BrickSpan& span) {
+        const BrickRange& range = grid.ranges[static_cast<size_t>(span.brick)];
+        if (range.min == range.max) {
+            if (!(range.max > 0.0f)) return true;
+            open_at(span.s0);
+            const float sigma_t = scale * range.max;
+            const float whole = (span.s1 - span.s0) * sigma_t;
+            // Equal steps in transmittance, as far as the light gets.
+            const float start = tau;
+            while (!out.is_full() && out.limit < start + whole) {
+                tau = out.limit;
+                out.close(span.s0 + (tau - start) / sigma_t, tau);
+            }
+            tau = start + whole;
+            end = span.s1;
+            out.cells_in_bin += 2;
+            if (out.cells_in_bin >= cells_max && !out.is_full()) out.close(end, tau);
+            return tau < depth_cut;
+        }
+        return for_each_cell(grid, local, span, [&](const CellSpan& cell) {
+            ++cells;
+            const float step = scale * cell.integral();
+            if (!(step > 0.0f)) return true;
+            open_at(cell.s0);
+            tau += step;
+            end = cell.s1;
+            ++out.cells_in_bin;
+            if ((out.cells_in_bin >= cells_max || tau > out.limit) && !out.is_full()) {
+                out.close(end, tau);
+            }
+            return tau < depth_cut;
+        });
+    });
+    if (started && out.cells_in_bin > 0) out.close(end, tau);
+    counts.cells += cells;
+    ++counts.rays;
+    counts.bins += bins.count;
+}
+
+/// Depth of one medium between two distances of a table's ray.
+float depth_between(const Volume& volume, const LocalRay& local, float s0, float s1)
+{
+    const LocalRay part = part_of(local, std::max(s0, 0.0f), std::min(s1, local.s1));
+    if (part.misses()) return 0.0f;
+    float sum = 0.0f;
+    for_each_brick(*volume.density, part, [&](const BrickSpan& span) {
+        sum += integrate_brick(*volume.density, part, span);
+        return true;
+    });
+    return sum * volume.density_scale;
+}
+
+/// The same through all media, distances counted from bins.t0.
+float depth_between(const Media& media, const Ray& ray, const RayBins& bins, float s0, float s1)
+{
+    float sum = 0.0f;
+    for (const Volume& volume : media.volumes) {
+        if (is_void(volume)) continue;
+        const LocalRay local = density_ray(volume, ray, {bins.world_t(s0), bins.world_t(s1)});
+        if (local.misses()) continue;
+        sum += depth_between(volume, local, 0.0f, local.s1);
+    }
+    return sum;
+}
+
+const Volume* single_volume(const Media& media)
+{
+    return media.volumes.size() == 1 ? &media.volumes.front() : nullptr;
+}
+
+/// A ray in the grid of the only medium, between two distances of its bins.
+LocalRay single_ray(const Volume& volume, const Ray& ray, const RayBins& bins, float s0, float s1)
+{
+    const GridFrame& frame =
+        volume.at_rest ? volume.at_rest->density : frames_at(volume, ray.time).density;
+    LocalRay part;
+    const double t = bins.t0 + static_cast<double>(s0);
+    part.o = Vec3(frame.point(ray.o) + t * frame.vector(ray.d));
+    part.d = Vec3(frame.vector(ray.d));
+    part.s1 = s1 - s0;
+    part.t0 = t;
+    return part;
+}
+
+float invert_single(const Volume& volume, const LocalRay& part, float tau)
+{
+    const BrickGrid& grid = *volume.density;
+    float left = tau;
+    float found = part.s1;
+    for_each_brick(grid, part, [&](const BrickSpan& span) {
+        const BrickRange& range = grid.ranges[static_cast<size_t>(span.brick)];
+        if (range.min == range.max) {
+            const float here = volume.density_scale * range.max * (span.s1 - span.s0);
+            if (left >= here) {
+                left -= here;
+                return true;
+            }
+            found = span.s0 + left / (volume.density_scale * range.max);
+            return false;
+        }
+        const float s = invert_brick(grid, part, span, volume.density_scale, left);
+        if (s < 0.0f) return true;
+        found = s;
+        return false;
+    });
+    return std::clamp(found, 0.0f, part.s1);
+}
+
+/// Merges the bins of several media: the union of their edges, thinned to what fits, and the depth
+/// of all media at each.
+void bin_all(const Media& media, const Ray& ray, float cut, RayBins& bins, BinCounts& counts)
+{
+    std::vector<double> edges;  // world distances
+    for (const Volume& volume : media.volumes) {
+        if (is_void(volume)) continue;
+        RayBins own;
+        bin_one(volume, ray, cut, own, counts);
+        for (int k = 0; k <= own.count && own.count > 0; ++k) {
+            edges.push_back(own.t0 + static_cast<double>(own.s[k]));
+        }
+    }
+    bins.count = 0;
+    if (edges.size() < 2) return;
+    std::sort(edges.begin(), edges.end());
+    bins.t0 = edges.front();
+    const size_t last = edges.size() - 1;
+    const size_t keep = std::min<size_t>(last, RayBins::capacity);
+    bins.s[0] = 0.0f;
+    bins.tau[0] = 0.0f;
+    for (size_t i = 1; i <= keep; ++i) {
+        const auto s = static_cast<float>(edges[i * last / keep] - bins.t0);
+        const float before = bins.s[bins.count];
+        if (!(s > before)) continue;
+        const float depth = depth_between(media, ray, bins, before, s);
+        ++bins.count;
+        bins.s[bins.count] = s;
+        bins.tau[bins.count] = bins.tau[bins.count - 1] + depth;
+    }
+}
+
+}  // namespace
+
+void make_ray_bins(const Media& media, const Ray& ray, float cut, RayBins& bins, BinCounts& counts)
+{
+    bins.count = 0;
+    if (const Volume* volume = single_volume(media)) {
+        if (!is_void(*volume)) bin_one(*volume, ray, cut, bins, counts);
+        return;
+    }
+    bin_all(media, ray, cut, bins, counts);
+}
+
+float invert_bin(const Media& media, const Ray& ray, const RayBins& bins, int k, float tau)
+{
+    const float s0 = bins.s[k];
+    const float s1 = bins.s[k + 1];
+    const float whole = bins.depth_of_bin(k);
+    if (!(tau > 0.0f)) return s0;
+    if (!(tau < whole)) return s1;
+    if (const Volume* volume = single_volume(media)) {
+        return s0 + invert_single(*volume, single_ray(*volume, ray, bins, s0, s1), tau);
+    }
+    // Root of a monotone function: false position kept inside a bracket, halved where it stalls.
+    float lo = s0;
+    float hi = s1;
+    float depth_lo = 0.0f;
+    float depth_hi = whole;
+    float s = s0 + (s1 - s0) * (tau / whole);
+    for (int i = 0; i < 40; ++i) {
+        const float depth = depth_between(media, ray, bins, s0, s);
+        if (std::abs(depth - tau) <= 1e-6f * whole) break;
+        (depth > tau ? hi : lo) = s;
+        (depth > tau ? depth_hi : depth_lo) = depth;
+        const float share = (tau - depth_lo) / std::max(depth_hi - depth_lo, 1e-30f);
+        const float next = i % 3 == 2 ? 0.5f * (lo + hi) : lo + (hi - lo) * share;
+        if (next == s) break;
+        s = next;
+    }
+    return std::clamp(s, s0, s1);
+}
+
+int bin_of(const RayBins& bins, float s)
+{
+    const float* first = bins.s;
+    const auto above = std::upper_bound(first, first + bins.count + 1, s) - first;
+    return std::clamp(static_cast<int>(above) - 1, 0, std::max(bins.count - 1, 0));
+}
+
+float depth_to(const Media& media, const Ray& ray, const RayBins& bins, float s)
+{
+    if (bins.empty() || !(s > bins.s[0])) return 0.0f;
+    if (!(s < bins.s[bins.count])) return bins.depth();
+    const int k = bin_of(bins, s);
+    const float near = bins.s[k];
+    const float within =
+        single_volume(media)
+            ? depth_between(media.volumes.front(),
+                            single_ray(media.volumes.front(), ray, bins, near, s), 0.0f, s - near)
+            : depth_between(media, ray, bins, near, s);
+    return std::min(bins.tau[k] + within, bins.tau[k + 1]);
+}
+
+}  // namespace mote
