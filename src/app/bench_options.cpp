@@ -50,7 +50,7 @@ void bind_bench(CLI::App& app, BenchOptions& o)
         ->type_name("SCENE");
     app.add_option("--methods", o.methods,
                    "Rows of the table, by comma; path* is all that begin so. Default: those that "
-                   "make sense for the scene's lights. Known: " +
+                   "make sense for the scene's lights, without path tracers far behind. Known: " +
                        known_methods())
         ->type_name("LIST");
     app.add_option(

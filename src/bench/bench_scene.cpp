@@ -47,7 +47,8 @@ struct Bench {
     std::vector<FramePlan> plans;  ///< of each mode
     std::vector<Method> methods;
     std::vector<Pilot> pilots;
-    std::vector<int> samples;   ///< of each method
+    std::vector<int> samples;  ///< of each method
+    std::vector<std::string> left_out;
     double wall_per_cpu = 1.0;  ///< clock time over CPU time, on this machine now
     PixelStats reference;
 
@@ -169,6 +170,25 @@ ModeResult run_mode(const Bench& bench, size_t mode_index, int rounds, double se
     return result;
 }
 
+/// Without a list of methods, leaves out those that cannot win.
+void leave_out_hopeless(Bench& bench)
+{
+    if (!bench.params.methods.empty()) return;
+    const std::vector<bool> worth = worth_measuring(bench.methods, bench.pilots);
+    std::vector<Method> methods;
+    std::vector<Pilot> pilots;
+    for (size_t i = 0; i < worth.size(); ++i) {
+        if (!worth[i]) {
+            bench.left_out.push_back(bench.methods[i].name);
+            continue;
+        }
+        methods.push_back(bench.methods[i]);
+        pilots.push_back(bench.pilots[i]);
+    }
+    bench.methods = std::move(methods);
+    bench.pilots = std::move(pilots);
+}
+
 /// Makes the frames, and chooses methods and their samples from short runs.
 void prepare(Bench& bench)
 {
@@ -189,6 +209,7 @@ void prepare(Bench& bench)
         bench.pilots.push_back(run_pilot(plan, method, bench.scene.render, bench.hooks.stop));
     }
     bench.wall_per_cpu = (now() - start) / std::max(cpu_now() - cpu_start, 1e-6);
+    leave_out_hopeless(bench);
     bench.samples = equal_time_samples(bench.methods, bench.pilots, bench.params.samples);
 }
 
@@ -198,7 +219,7 @@ SceneResult bench_scene(const SceneDescription& scene, const BenchParams& params
                         const BenchHooks& hooks)
 {
     const double start = now();
-    Bench bench{scene, params, hooks, 0, {}, {}, {}, {}, {}, 1.0, {}};
+    Bench bench{scene, params, hooks, 0, {}, {}, {}, {}, {}, {}, 1.0, {}};
     bench.frame = params.frame.value_or(scene.first_frame + params.frames.warm_up);
     bench.modes = choose_modes(params.modes, scene);
     prepare(bench);
@@ -215,9 +236,15 @@ SceneResult bench_scene(const SceneDescription& scene, const BenchParams& params
     }
     if (params.reference_time > 0.0) reference_seconds = params.reference_time;
 
-    SceneResult result{
-        scene.path,  scene.name, scene.hash, scene.render.width, scene.render.height, bench.frame,
-        params.seed, {},         {}};
+    SceneResult result;
+    result.path = scene.path;
+    result.name = scene.name;
+    result.hash = scene.hash;
+    result.width = scene.render.width;
+    result.height = scene.render.height;
+    result.frame = bench.frame;
+    result.seed = params.seed;
+    result.left_out = bench.left_out;
     result.reference = render_reference(bench, reference_seconds);
     const double share = runs_share * left / static_cast<double>(bench.modes.size());
     for (size_t i = 0; i < bench.modes.size(); ++i) {

@@ -57,6 +57,7 @@ struct SceneResult {
     uint32_t seed = 0;
     ReferenceInfo reference;
     std::vector<ModeResult> modes;
+    std::vector<std::string> left_out;  ///< path tracers that short runs showed to be far behind
 };
 
 /// Measures the methods on a scene. Methods take turns, run by run, so that what else the machine

@@ -84,6 +84,10 @@ std::string bench_table(const SceneResult& scene)
         "off "
         "the MSE)\n",
         r.method, r.runs, r.samples, r.mean, 100.0 * r.relative_error, r.noise);
+    if (!scene.left_out.empty()) {
+        text += fmt::format("left out, far behind in short runs: {}\n",
+                            fmt::join(scene.left_out, ", "));
+    }
     for (const ModeResult& mode : scene.modes) text += mode_table(mode, r);
     return text;
 }

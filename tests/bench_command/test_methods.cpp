@@ -102,6 +102,17 @@ TEST(Methods, TheReferenceIsTheBestPathTracer)
     EXPECT_EQ(best_reference_row({method_of(false, 0)}, {{1.0, 1.0}}), -1);
 }
 
+TEST(Methods, OnlyHopelessPathTracersAreLeftOut)
+{
+    // Variance times time: 1, 2.9, 3.1, and 100 of a row that is no reference.
+    const std::vector<Pilot> pilots{{1.0, 1.0}, {1.0, 2.9}, {3.1, 1.0}, {10.0, 10.0}};
+    const Method path = method_of(true, 0);
+    const Method other = method_of(false, 1);
+    EXPECT_EQ(worth_measuring({path, path, path, other}, pilots),
+              (std::vector<bool>{true, true, false, true}));
+    EXPECT_EQ(worth_measuring({other}, {{10.0, 10.0}}), std::vector<bool>{true});
+}
+
 TEST(Modes, FollowWhatMoves)
 {
     using Modes = std::vector<BenchMode>;
