@@ -14,6 +14,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "scene/scene_io.h"
+#include "volumes/walk_isa.h"
 
 namespace mote {
 
@@ -58,7 +59,9 @@ void measure(const BenchOptions& options)
     if (!options.csv.empty()) require_writable_folder(options.csv);
 
     const BenchHooks hooks{stop_requested, [](const std::string& line) { spdlog::info(line); }};
-    BenchReport report{MOTE_VERSION, MOTE_ARCH " " MOTE_BUILD_TYPE, options.threads, {}};
+    const std::string build =
+        fmt::format(MOTE_ARCH " " MOTE_BUILD_TYPE ", ray walk {}", name_of(walk_isa()));
+    BenchReport report{MOTE_VERSION, build, options.threads, {}};
     run_with_threads(options.threads, [&] {
         for (const SceneDescription& scene : scenes) {
             report.scenes.push_back(bench_scene(scene, params, hooks));

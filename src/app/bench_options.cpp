@@ -25,13 +25,12 @@ FrameCounts parse_frame_counts(const std::string& text)
 {
     FrameCounts counts;
     int used = 0;
-    if (std::sscanf(text.c_str(), "%4d+%4d%n", &counts.warm_up, &counts.measured, &used) != 2 ||
-        static_cast<size_t>(used) != text.size() || counts.warm_up < 0 || counts.measured < 1 ||
-        counts.warm_up > most_frames || counts.measured > most_frames) {
-        throw Error(
-            ExitCode::Usage,
-            fmt::format("--frames \"{}\" is not WARM-UP+MEASURED, e.g. 8+8, at most {} each",
-                        printable(text), most_frames));
+    if (std::sscanf(text.c_str(), "%4d+%4d%n", &counts.warm_up, &counts.still, &used) != 2 ||
+        static_cast<size_t>(used) != text.size() || counts.warm_up < 0 || counts.still < 1 ||
+        counts.warm_up > most_frames || counts.still > most_frames) {
+        throw Error(ExitCode::Usage,
+                    fmt::format("--frames \"{}\" is not WARM-UP+STILL, e.g. 8+8, at most {} each",
+                                printable(text), most_frames));
     }
     return counts;
 }
@@ -51,17 +50,18 @@ void bind_bench(CLI::App& app, BenchOptions& o)
         ->type_name("SCENE");
     app.add_option("--methods", o.methods,
                    "Rows of the table, by comma; path* is all that begin so. Default: those that "
-                   "make sense for the scene's lights. Known: " +
+                   "make sense for the scene's lights, without path tracers far behind. Known: " +
                        known_methods())
         ->type_name("LIST");
-    app.add_option("--modes", o.modes,
-                   "still: the mean of several frames; static: one frame after warm-up frames; "
-                   "moving: the same in the animation. Default: moving if anything moves, else "
-                   "still,static")
+    app.add_option(
+           "--modes", o.modes,
+           "still: one frame alone, of many samples; static: one frame after warm-up "
+           "frames; moving: the same in the animation. Default: moving if anything moves, else "
+           "still,static")
         ->type_name("LIST");
     app.add_option("--frames", o.frames,
-                   "Frames before the one compared (static, moving) and frames of the mean "
-                   "(still). Default: 8+8")
+                   "Frames before the one compared (static, moving), and how often still takes the "
+                   "samples of a frame. Default: 8+8")
         ->type_name("W+N");
     app.add_option("--frame", o.frame,
                    "The frame compared. Default: the scene's first after the warm-up")
@@ -72,9 +72,13 @@ void bind_bench(CLI::App& app, BenchOptions& o)
         ->check(CLI::Range(2, 10'000))
         ->type_name("K");
     app.add_option("--samples", o.samples,
-                   "Samples per pixel and frame, of methods that leave it open. Default: as many "
+                   "Samples per pixel and frame, of the path tracer. Default: as many "
                    "as make all take the same time")
         ->check(CLI::Range(1, 1'000'000))
+        ->type_name("N");
+    app.add_option("--passes", o.passes, "Passes per frame of restir")
+        ->check(CLI::Range(1, 1'000'000))
+        ->capture_default_str()
         ->type_name("N");
     app.add_option("--time-budget", o.time_budget,
                    "About how long a scene may take [s]: fewer runs, a shorter reference")
@@ -123,6 +127,7 @@ BenchParams bench_params(const BenchOptions& options)
     params.reference = options.reference;
     params.frame = options.frame;
     params.samples = options.samples;
+    params.passes = options.passes;
     params.time_budget = options.time_budget;
     params.reference_time = options.reference_time;
     params.seed = static_cast<uint32_t>(options.seed);

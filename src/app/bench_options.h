@@ -12,7 +12,7 @@ namespace mote {
 /// The options of `mote bench`.
 void bind_bench(CLI::App& app, BenchOptions& options);
 
-/// What they ask for. Throws Error(Usage) for frames that are not "WARM-UP+MEASURED".
+/// What they ask for. Throws Error(Usage) for frames that are not "WARM-UP+STILL".
 [[nodiscard]] BenchParams bench_params(const BenchOptions& options);
 
 }  // namespace mote

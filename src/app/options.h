@@ -100,9 +100,10 @@ struct BenchOptions {
     std::string methods;                  ///< by comma; empty: those worthwhile for the scene
     std::string reference;                ///< method; empty: the best path tracer
     std::optional<int> frame;
-    std::optional<std::string> frames;  ///< "WARM-UP+MEASURED"
+    std::optional<std::string> frames;  ///< "WARM-UP+STILL"
     std::optional<int> runs;
     int samples = 0;              ///< 0: equal times
+    int passes = 1;               ///< of restir per frame
     double time_budget = 0.0;     ///< [s] per scene; 0: none
     double reference_time = 0.0;  ///< [s]; 0: that of all runs
     int seed = 1;

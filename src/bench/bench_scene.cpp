@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <ctime>
 
 #include <fmt/format.h>
 
@@ -29,6 +30,13 @@ double now()
     return std::chrono::duration<double>(time).count();
 }
 
+double cpu_now()
+{
+    timespec time{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
 /// The benchmark of one scene while it runs.
 struct Bench {
     const SceneDescription& scene;
@@ -40,6 +48,8 @@ struct Bench {
     std::vector<Method> methods;
     std::vector<Pilot> pilots;
     std::vector<int> samples;  ///< of each method
+    std::vector<std::string> left_out;
+    double wall_per_cpu = 1.0;  ///< clock time over CPU time, on this machine now
     PixelStats reference;
 
     void say(const std::string& line) const
@@ -52,15 +62,15 @@ struct Bench {
 
 int frames_rendered(const FramePlan& plan, const Method& method)
 {
-    return method.keeps_history ? static_cast<int>(plan.frames.size()) : plan.measured;
+    return method.keeps_history ? static_cast<int>(plan.frames.size()) : 1;
 }
 
-/// CPU time of one run of every method in one mode, by the pilots.
+/// CPU time of one run of every method in one mode, by the short runs.
 double round_seconds(const Bench& bench, const FramePlan& plan)
 {
     double seconds = 0.0;
     for (size_t i = 0; i < bench.methods.size(); ++i) {
-        seconds += frames_rendered(plan, bench.methods[i]) * bench.samples[i] *
+        seconds += frames_rendered(plan, bench.methods[i]) * plan.sample_factor * bench.samples[i] *
                    bench.pilots[i].sample_seconds;
     }
     return seconds;
@@ -132,7 +142,7 @@ ModeResult run_mode(const Bench& bench, size_t mode_index, int rounds, double se
         MethodResult row;
         row.name = bench.methods[i].name;
         row.is_reference = bench.methods[i].is_reference;
-        row.samples = bench.samples[i];
+        row.samples = bench.samples[i] * plan.sample_factor;
         row.frames = frames_rendered(plan, bench.methods[i]);
         result.rows.push_back(std::move(row));
     }
@@ -145,9 +155,9 @@ ModeResult run_mode(const Bench& bench, size_t mode_index, int rounds, double se
         for (size_t i = 0; i < bench.methods.size(); ++i) {
             const Method& method = bench.methods[i];
             const uint32_t seed = bench.params.seed + static_cast<uint32_t>(round);
-            const PlayedRun run =
-                play_run(plan, method.keeps_history,
-                         settings_of(bench, method, bench.samples[i], seed), bench.hooks.stop);
+            const PlayedRun run = play_run(plan, method.keeps_history,
+                                           settings_of(bench, method, result.rows[i].samples, seed),
+                                           bench.hooks.stop);
             result.rows[i].non_finite += run.non_finite;
             result.rows[i].runs.push_back(figures_of(run, bench.reference));
             add_run(tested[i], run.image);
@@ -160,6 +170,25 @@ ModeResult run_mode(const Bench& bench, size_t mode_index, int rounds, double se
     return result;
 }
 
+/// Without a list of methods, leaves out those that cannot win.
+void leave_out_hopeless(Bench& bench)
+{
+    if (!bench.params.methods.empty()) return;
+    const std::vector<bool> worth = worth_measuring(bench.methods, bench.pilots);
+    std::vector<Method> methods;
+    std::vector<Pilot> pilots;
+    for (size_t i = 0; i < worth.size(); ++i) {
+        if (!worth[i]) {
+            bench.left_out.push_back(bench.methods[i].name);
+            continue;
+        }
+        methods.push_back(bench.methods[i]);
+        pilots.push_back(bench.pilots[i]);
+    }
+    bench.methods = std::move(methods);
+    bench.pilots = std::move(pilots);
+}
+
 /// Makes the frames, and chooses methods and their samples from short runs.
 void prepare(Bench& bench)
 {
@@ -170,10 +199,17 @@ void prepare(Bench& bench)
     }
     const FramePlan plan = bench.last_frame();
     bench.methods = choose_methods(bench.params.methods, traits_of(plan.frames.back()));
+    for (Method& method : bench.methods) {
+        if (method.samples_per_frame > 0) method.samples_per_frame = bench.params.passes;
+    }
     bench.say(fmt::format("short runs of {} methods", bench.methods.size()));
+    const double start = now();
+    const double cpu_start = cpu_now();
     for (const Method& method : bench.methods) {
         bench.pilots.push_back(run_pilot(plan, method, bench.scene.render, bench.hooks.stop));
     }
+    bench.wall_per_cpu = (now() - start) / std::max(cpu_now() - cpu_start, 1e-6);
+    leave_out_hopeless(bench);
     bench.samples = equal_time_samples(bench.methods, bench.pilots, bench.params.samples);
 }
 
@@ -183,7 +219,7 @@ SceneResult bench_scene(const SceneDescription& scene, const BenchParams& params
                         const BenchHooks& hooks)
 {
     const double start = now();
-    Bench bench{scene, params, hooks, 0, {}, {}, {}, {}, {}, {}};
+    Bench bench{scene, params, hooks, 0, {}, {}, {}, {}, {}, {}, 1.0, {}};
     bench.frame = params.frame.value_or(scene.first_frame + params.frames.warm_up);
     bench.modes = choose_modes(params.modes, scene);
     prepare(bench);
@@ -194,15 +230,21 @@ SceneResult bench_scene(const SceneDescription& scene, const BenchParams& params
     int rounds = params.runs;
     double reference_seconds = params.runs * round;
     if (params.time_budget > 0.0) {
-        const double fitting = std::floor(runs_share * left / round);
+        const double fitting = std::floor(runs_share * left / (round * bench.wall_per_cpu));
         rounds = static_cast<int>(std::clamp(fitting, double{fewest_runs}, double(params.runs)));
-        reference_seconds = (1.0 - runs_share) * left;
+        reference_seconds = (1.0 - runs_share) * left / bench.wall_per_cpu;
     }
     if (params.reference_time > 0.0) reference_seconds = params.reference_time;
 
-    SceneResult result{
-        scene.path,  scene.name, scene.hash, scene.render.width, scene.render.height, bench.frame,
-        params.seed, {},         {}};
+    SceneResult result;
+    result.path = scene.path;
+    result.name = scene.name;
+    result.hash = scene.hash;
+    result.width = scene.render.width;
+    result.height = scene.render.height;
+    result.frame = bench.frame;
+    result.seed = params.seed;
+    result.left_out = bench.left_out;
     result.reference = render_reference(bench, reference_seconds);
     const double share = runs_share * left / static_cast<double>(bench.modes.size());
     for (size_t i = 0; i < bench.modes.size(); ++i) {

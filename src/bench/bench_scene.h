@@ -20,6 +20,7 @@ struct BenchParams {
     FrameCounts frames;
     int runs = 8;                 ///< per method, >= 2; independent: own seeds, empty history
     int samples = 0;              ///< of rows without their own number; 0: equal times
+    int passes = 1;               ///< of rows with one: passes of restir per frame
     double time_budget = 0.0;     ///< about how long a scene may take [s]; 0: no limit
     double reference_time = 0.0;  ///< CPU time of the reference image [s]; 0: that of all runs
     uint32_t seed = 1;            ///< of the first run; the reference has its own
@@ -56,6 +57,7 @@ struct SceneResult {
     uint32_t seed = 0;
     ReferenceInfo reference;
     std::vector<ModeResult> modes;
+    std::vector<std::string> left_out;  ///< path tracers that short runs showed to be far behind
 };
 
 /// Measures the methods on a scene. Methods take turns, run by run, so that what else the machine

@@ -12,8 +12,9 @@ namespace mote {
 
 /// What decides which methods are worth measuring on a scene.
 struct SceneTraits {
-    bool several_lights = false;  ///< a choice of light is to be made
-    bool local_lights = false;    ///< lights at a finite distance
+    bool several_lights = false;   ///< a choice of light is to be made
+    bool local_lights = false;     ///< lights at a finite distance
+    bool infinite_lights = false;  ///< distant lights or an environment
 };
 
 [[nodiscard]] SceneTraits traits_of(const Scene& scene);

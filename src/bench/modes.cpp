@@ -12,7 +12,7 @@ namespace mote {
 namespace {
 
 constexpr ModeInfo table[] = {
-    {BenchMode::Still, "still", "the mean of several frames, nothing moves"},
+    {BenchMode::Still, "still", "one frame alone, of many samples"},
     {BenchMode::Static, "static", "one frame after warm-up frames, nothing moves"},
     {BenchMode::Moving, "moving", "one frame of the animation, after the frames before it"},
 };
@@ -76,8 +76,8 @@ FramePlan plan_frames(const SceneDescription& scene, BenchMode mode, int frame,
                       const FrameCounts& counts, SceneCache& cache)
 {
     FramePlan plan;
-    plan.measured = mode == BenchMode::Still ? counts.measured : 1;
-    const int frame_count = mode == BenchMode::Still ? counts.measured : counts.warm_up + 1;
+    plan.sample_factor = mode == BenchMode::Still ? counts.still : 1;
+    const int warm_up = mode == BenchMode::Still ? 0 : counts.warm_up;
     PrepareNeeds needs;
     needs.velocity = mode == BenchMode::Moving;
     needs.velocity_may_be_missing = true;
@@ -86,7 +86,7 @@ FramePlan plan_frames(const SceneDescription& scene, BenchMode mode, int frame,
         return prepare_frame(scene, number, needs, cache, ignored);
     };
     const Scene last = prepare(frame);
-    for (int number = frame - frame_count + 1; number < frame; ++number) {
+    for (int number = frame - warm_up; number < frame; ++number) {
         plan.frames.push_back(mode == BenchMode::Moving ? prepare(number) : last);
         plan.frames.back().frame = number;
     }

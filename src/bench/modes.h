@@ -12,7 +12,7 @@ namespace mote {
 
 /// What is shown and compared.
 enum class BenchMode {
-    Still,   ///< the mean of several frames in which nothing moves
+    Still,   ///< one frame alone, of many samples
     Static,  ///< one frame after warm-up frames, nothing moves
     Moving,  ///< one frame of the animation, after the frames before it
 };
@@ -34,16 +34,15 @@ struct ModeInfo {
 /// Whether camera, volumes, particles or lights may change from frame to frame.
 [[nodiscard]] bool is_animated(const SceneDescription& scene);
 
-/// Frames that a mode renders in one run, oldest first, and how many of them at the end are
-/// averaged into the image that is compared.
+/// Frames that a mode renders in one run, oldest first. The last one is compared.
 struct FramePlan {
     std::vector<Scene> frames;
-    int measured = 1;
+    int sample_factor = 1;  ///< multiplies the samples that methods take per frame
 };
 
 struct FrameCounts {
-    int warm_up = 8;   ///< frames before the measured one, Static and Moving
-    int measured = 8;  ///< frames of the mean, Still
+    int warm_up = 8;  ///< frames before the one compared, Static and Moving
+    int still = 8;    ///< the sample_factor of Still
 };
 
 /// Prepares the frames; all modes show the same frame last. Frames of a scene at rest share their

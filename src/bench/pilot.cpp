@@ -17,6 +17,9 @@ constexpr uint32_t pilot_seed = 0xA0000000u;
 constexpr int slowest_row_samples = 4;
 constexpr double most_samples = 1e6;
 
+/// Far beyond what two short runs misjudge.
+constexpr double hopeless_cost = 3.0;
+
 }  // namespace
 
 Pilot run_pilot(const FramePlan& plan, const Method& method, const RenderDescription& render,
@@ -62,16 +65,28 @@ std::vector<int> equal_time_samples(const std::vector<Method>& methods,
     return result;
 }
 
+std::vector<bool> worth_measuring(const std::vector<Method>& methods,
+                                  const std::vector<Pilot>& pilots)
+{
+    std::vector<bool> worth(methods.size(), true);
+    const int best = best_reference_row(methods, pilots);
+    if (best < 0) return worth;
+    const double limit = hopeless_cost * pilots[static_cast<size_t>(best)].cost();
+    for (size_t i = 0; i < methods.size(); ++i) {
+        worth[i] = !methods[i].is_reference || !(pilots[i].cost() > limit);
+    }
+    return worth;
+}
+
 int best_reference_row(const std::vector<Method>& methods, const std::vector<Pilot>& pilots)
 {
     int best = -1;
     double least = 0.0;
     for (size_t i = 0; i < methods.size(); ++i) {
         if (!methods[i].is_reference) continue;
-        const double cost = pilots[i].sample_variance * pilots[i].sample_seconds;
-        if (best >= 0 && !(cost < least)) continue;
+        if (best >= 0 && !(pilots[i].cost() < least)) continue;
         best = static_cast<int>(i);
-        least = cost;
+        least = pilots[i].cost();
     }
     return best;
 }

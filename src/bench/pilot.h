@@ -11,6 +11,8 @@ namespace mote {
 struct Pilot {
     double sample_seconds = 0.0;   ///< CPU time of one sample per pixel of one frame
     double sample_variance = 0.0;  ///< of it, averaged over the image without the worst pixels
+
+    [[nodiscard]] double cost() const { return sample_variance * sample_seconds; }
 };
 
 /// Renders a plan of one frame twice.
@@ -22,6 +24,11 @@ struct Pilot {
 /// of the slowest row. At least 1.
 [[nodiscard]] std::vector<int> equal_time_samples(const std::vector<Method>& methods,
                                                   const std::vector<Pilot>& pilots, int samples);
+
+/// Whether each method is worth full runs: no, if it is a reference row whose variance times time
+/// is several times that of the best one, which no judgement by more runs would turn round.
+[[nodiscard]] std::vector<bool> worth_measuring(const std::vector<Method>& methods,
+                                                const std::vector<Pilot>& pilots);
 
 /// The reference row of least variance times time; -1 if there is none.
 [[nodiscard]] int best_reference_row(const std::vector<Method>& methods,

@@ -30,32 +30,24 @@ OutputDescription float_colors()
 PlayedRun play_run(const FramePlan& plan, bool keeps_history, const RenderDescription& render,
                    StopRequested stop)
 {
-    const auto measured = static_cast<size_t>(plan.measured);
-    MOTE_ASSERT(measured >= 1 && measured <= plan.frames.size());
-    const size_t first_measured = plan.frames.size() - measured;
+    MOTE_ASSERT(!plan.frames.empty());
     const OutputDescription output = float_colors();
-    PlayedRun run;
+    const size_t first = keeps_history ? 0 : plan.frames.size() - 1;
     FrameHistory history;
+    PlayedRun run;
     double all_caches = 0.0;
-    size_t rendered = 0;
-    for (size_t i = keeps_history ? 0 : first_measured; i < plan.frames.size(); ++i, ++rendered) {
+    for (size_t i = first; i < plan.frames.size(); ++i) {
         FrameStats stats;
-        const LayeredImage image = render_frame(plan.frames[i], render, output, history, stop, stats);
+        const LayeredImage image =
+            render_frame(plan.frames[i], render, output, history, stop, stats);
         if (image.channels.empty()) throw Error(ExitCode::Interrupted, "stopped by a signal");
-        const double cache = stats.cache_cpu_seconds;
-        all_caches += cache;
-        run.non_finite += stats.dropped_non_finite;
-        if (i < first_measured) continue;
-        Buffer2D<Spectrum> color = color_of(image);
-        run.non_finite += replace_non_finite(color);
-        if (i == first_measured) run.image = Buffer2D<Spectrum>(color.width(), color.height());
-        const float weight = 1.0f / static_cast<float>(measured);
-        for (size_t p = 0; p < color.size(); ++p) run.image.data()[p] += weight * color.data()[p];
-        run.cpu_seconds += stats.render_cpu_seconds - cache;
-        run.wall_seconds += stats.render_seconds;
+        run.image = color_of(image);
+        run.non_finite += stats.dropped_non_finite + replace_non_finite(run.image);
+        run.cpu_seconds = stats.render_cpu_seconds - stats.cache_cpu_seconds;
+        run.wall_seconds = stats.render_seconds;
+        all_caches += stats.cache_cpu_seconds;
     }
-    const double share = static_cast<double>(measured) / static_cast<double>(rendered);
-    run.cache_cpu_seconds = all_caches * share;
+    run.cache_cpu_seconds = all_caches / static_cast<double>(plan.frames.size() - first);
     run.cpu_seconds += run.cache_cpu_seconds;
     return run;
 }

@@ -7,21 +7,20 @@
 
 namespace mote {
 
-/// What one run of a method gave. Times are those of the measured frames, image writing and the
-/// scene's preparation apart.
+/// What one run of a method gave: the plan's last frame, and what that took. Image writing and the
+/// scene's preparation are not part of the times.
 struct PlayedRun {
-    Buffer2D<Spectrum> image;        ///< mean of the measured frames
-    double cpu_seconds = 0.0;        ///< process CPU time, this run's share of caches included
+    Buffer2D<Spectrum> image;
+    double cpu_seconds = 0.0;        ///< process CPU time, its share of caches included
     double cache_cpu_seconds = 0.0;  ///< that share
-    double wall_seconds = 0.0;       ///< as cpu_seconds, by the clock
-    int64_t non_finite = 0;          ///< pixels and samples replaced by black; must be 0
+    double wall_seconds = 0.0;       ///< by the clock, with the caches the frame itself built
+    int64_t non_finite = 0;          ///< pixels and samples replaced by black, all frames
 };
 
-/// Renders the plan's frames in order, from empty history, and averages the measured ones. Without
-/// history only the measured ones are rendered. Caches are charged as they are built, evenly over
-/// the frames rendered: in full where every frame builds them, spread where one build serves all.
-/// Throws Error(Interrupted) once `stop` says so. This is the one place where the benchmark calls
-/// the renderer.
+/// Renders the plan's frames in order, from empty history; without history only the last one.
+/// Caches are charged evenly over the frames rendered: in full where every frame builds them,
+/// spread where one build serves all. Throws Error(Interrupted) once `stop` says so. This is the
+/// one place where the benchmark calls the renderer.
 [[nodiscard]] PlayedRun play_run(const FramePlan& plan, bool keeps_history,
                                  const RenderDescription& render, StopRequested stop);
 

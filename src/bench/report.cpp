@@ -26,7 +26,7 @@ std::string row_line(const MethodResult& row)
     const MethodFigures& f = row.figures;
     const std::string ratio_error = number(100.0 * f.efficiency_error, "{:.0f}");
     return fmt::format(
-        "  {:<22}{:>5}{:>9}{:>8}{:>10}{:>10}{:>10}{:>10}{:>10}{:>6}{:>9} +-{:<6}{:>9}{:>8}{:>9} "
+        "  {:<22}{:>5}{:>9}{:>8}{:>10}{:>10}{:>10}{:>10}{:>10}{:>6}{:>9} +-{:<6}{:>10}{:>8}{:>9} "
         "+-{}%\n",
         row.name, row.samples, number(f.cpu_us, "{:.3f}"), number(f.cache_us, "{:.3f}"),
         number(f.n_var, "{:.3e}"), number(f.error.mse, "{:.3e}"),
@@ -64,7 +64,7 @@ std::string mode_table(const ModeResult& mode, const ReferenceInfo& reference)
     for (const MethodResult& row : mode.rows) runs = std::max(runs, row.runs.size());
     std::string text = fmt::format("\n{}, {} runs\n", mode_name(mode.mode), runs);
     text += fmt::format(
-        "  {:<22}{:>5}{:>9}{:>8}{:>10}{:>10}{:>10}{:>10}{:>10}{:>6}{:>18}{:>9}{:>8}{:>9}\n",
+        "  {:<22}{:>5}{:>9}{:>8}{:>10}{:>10}{:>10}{:>10}{:>10}{:>6}{:>18}{:>10}{:>8}{:>9}\n",
         "method", "spp", "CPU us", "caches", "nVar", "MSE", "trimmed", "relMSE", "trimmed", "worst",
         "bias %", "1/(MSE t)", "x best", "trimmed");
     for (const MethodResult& row : mode.rows) text += row_line(row);
@@ -84,22 +84,25 @@ std::string bench_table(const SceneResult& scene)
         "off "
         "the MSE)\n",
         r.method, r.runs, r.samples, r.mean, 100.0 * r.relative_error, r.noise);
+    if (!scene.left_out.empty()) {
+        text += fmt::format("left out, far behind in short runs: {}\n",
+                            fmt::join(scene.left_out, ", "));
+    }
     for (const ModeResult& mode : scene.modes) text += mode_table(mode, r);
     return text;
 }
 
 std::string bench_legend()
 {
-    return "\nspp: samples per pixel and frame; CPU us: process CPU time per pixel of the image\n"
-           "compared, of it caches: their share (built as the method does, spread over the frames\n"
-           "rendered). nVar: variance over the runs; MSE against the reference; both over the\n"
-           "square of the reference's mean. relMSE: each pixel's over reference^2 + 0.01 mean^2.\n"
-           "trimmed: without the 0.1 % of the pixels that err most; worst: their share of the "
-           "MSE.\n"
-           "Errors and times are medians over the runs. 1/(MSE t): efficiency, t in CPU us.\n"
-           "x best: over the best row of the path tracer, by the full and by the trimmed MSE, "
-           "with\n"
-           "the standard error of the efficiency.\n";
+    return R"(
+spp: samples per pixel of the frame; CPU us: process CPU time per pixel of the frame
+compared, of it caches: those of all frames rendered over their number. nVar: variance
+over the runs; MSE against the reference; both over the square of the reference's mean.
+relMSE: each pixel's over reference^2 + 0.01 mean^2. trimmed: without the 0.1 % of the
+pixels that err most; worst: their share of the MSE. Errors and times are medians over
+the runs. 1/(MSE t): efficiency, t in CPU us. x best: over the best row of the path
+tracer, by the full and by the trimmed MSE, with the efficiency's standard error.
+)";
 }
 
 }  // namespace mote

@@ -10,7 +10,7 @@ namespace mote {
 /// What a results file holds.
 struct BenchReport {
     std::string version;  ///< of mote
-    std::string build;    ///< instruction set and build type
+    std::string build;    ///< instruction sets and build type
     int threads = 1;
     std::vector<SceneResult> scenes;
 };

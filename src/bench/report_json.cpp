@@ -90,6 +90,7 @@ Json to_json(const SceneResult& scene)
             {"frame", scene.frame},
             {"seed", scene.seed},
             {"reference", to_json(scene.reference)},
+            {"left_out", scene.left_out},
             {"modes", std::move(modes)}};
 }
 

@@ -33,6 +33,7 @@ struct FrameDomain {
     std::vector<float> emission_lengths;  ///< of each volume: diagonal of its bounds [m]
     bool has_phase_candidates = false;
     bool has_emission = false;        ///< some medium glows
+    bool has_motion = false;          ///< camera or media move while the shutter is open
     float transmittance_cut = 1e-7f;  ///< where camera rays may end, see make_ray_bins
 
     [[nodiscard]] bool has_sampled_lights() const { return samples_local || !infinite.empty(); }

@@ -18,6 +18,15 @@ Names names_of(const std::vector<Method>& methods)
     return names;
 }
 
+Names paths_of(const std::vector<Method>& methods)
+{
+    Names names;
+    for (const Method& method : methods) {
+        if (method.is_reference) names.push_back(method.name);
+    }
+    return names;
+}
+
 Method method_of(bool is_reference, int samples)
 {
     Method method = all_methods().front();
@@ -30,12 +39,16 @@ Method method_of(bool is_reference, int samples)
 
 TEST(Methods, TheLightsOfTheSceneDecideWhatIsMeasured)
 {
-    EXPECT_EQ(names_of(choose_methods("", {})), (Names{"path", "path-exact"}));
-    const Names one_lamp = names_of(choose_methods("", {false, true}));
+    // Several lights, local lights, lights at infinity.
+    EXPECT_EQ(paths_of(choose_methods("", {false, false, true})), (Names{"path", "path-exact"}));
+    const Names one_lamp = paths_of(choose_methods("", {false, true, false}));
     EXPECT_EQ(one_lamp, (Names{"path", "path-exact", "path-equi", "path-equi-exact"}));
-    const Names many = names_of(choose_methods("", {true, true}));
+    const Names many = paths_of(choose_methods("", {true, true, false}));
     EXPECT_EQ(many.size(), 12u);
     EXPECT_EQ(many.front(), "path-power");
+    // The preview is the closed form of lights at infinity alone.
+    EXPECT_EQ(names_of(choose_methods("", {false, false, true})).back(), "restir-preview");
+    EXPECT_EQ(names_of(choose_methods("", {false, true, true})).back(), "restir-textbook");
 }
 
 TEST(Methods, AreChosenByNameAndBeginning)
@@ -60,6 +73,11 @@ TEST(Methods, EditTheSettingsTheyAreNamedFor)
     EXPECT_EQ(render.path.light_sampler, LightSamplerKind::Power);
     EXPECT_FALSE(render.path.equiangular);
     EXPECT_EQ(render.path.transmittance, TransmittanceKind::ResidualRatio);
+    find_method("restir-spatial").edit(render);
+    EXPECT_EQ(render.estimator, EstimatorKind::Restir);
+    EXPECT_EQ(render.restir.reuse, ReuseMode::Spatial);
+    find_method("path").edit(render);
+    EXPECT_EQ(render.estimator, EstimatorKind::Path);
 }
 
 TEST(Methods, RowsTakeEqualTimes)
@@ -82,6 +100,17 @@ TEST(Methods, TheReferenceIsTheBestPathTracer)
     const Method path = method_of(true, 0);
     EXPECT_EQ(best_reference_row({path, path, method_of(false, 0)}, pilots), 1);
     EXPECT_EQ(best_reference_row({method_of(false, 0)}, {{1.0, 1.0}}), -1);
+}
+
+TEST(Methods, OnlyHopelessPathTracersAreLeftOut)
+{
+    // Variance times time: 1, 2.9, 3.1, and 100 of a row that is no reference.
+    const std::vector<Pilot> pilots{{1.0, 1.0}, {1.0, 2.9}, {3.1, 1.0}, {10.0, 10.0}};
+    const Method path = method_of(true, 0);
+    const Method other = method_of(false, 1);
+    EXPECT_EQ(worth_measuring({path, path, path, other}, pilots),
+              (std::vector<bool>{true, true, false, true}));
+    EXPECT_EQ(worth_measuring({other}, {{10.0, 10.0}}), std::vector<bool>{true});
 }
 
 TEST(Modes, FollowWhatMoves)
@@ -111,11 +140,11 @@ TEST(Modes, AllShowTheSameFrameLast)
     const FramePlan still = plan_frames(scene, BenchMode::Still, 10, counts, cache);
     const FramePlan rest = plan_frames(scene, BenchMode::Static, 10, counts, cache);
     const FramePlan moving = plan_frames(scene, BenchMode::Moving, 10, counts, cache);
-    EXPECT_EQ(still.frames.size(), 2u);
-    EXPECT_EQ(still.measured, 2);
+    EXPECT_EQ(still.frames.size(), 1u);
+    EXPECT_EQ(still.sample_factor, 2);
     EXPECT_EQ(rest.frames.size(), 4u);
     EXPECT_EQ(moving.frames.size(), 4u);
-    EXPECT_EQ(moving.measured, 1);
+    EXPECT_EQ(moving.sample_factor, 1);
     const auto grid = [](const Scene& s) { return s.media.volumes.front().density.get(); };
     EXPECT_EQ(grid(rest.frames.front()), grid(rest.frames.back()));
     EXPECT_NE(grid(moving.frames.front()), grid(moving.frames.back()));

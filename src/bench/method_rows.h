@@ -1,0 +1,13 @@
+#pragma once
+
+#include <vector>
+
+#include "bench/methods.h"
+
+namespace mote {
+
+/// The rows of the two estimators; all_methods() holds them in this order.
+[[nodiscard]] std::vector<Method> path_methods();
+[[nodiscard]] std::vector<Method> restir_methods();
+
+}  // namespace mote
