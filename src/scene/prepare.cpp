@@ -69,18 +69,17 @@ std::optional<GridPlan> Preparation::plan_file(const VolumeDescription& volume) 
     const auto path = resolve_sequence(*volume.file, frame, description.base_dir);
     if (!path) return std::nullopt;
     GridPlan plan{FilePlan{*path}, file_version(*path), wanted_grids(volume)};
-    if (needs.velocity && needs.velocity_may_be_missing) {
+    // The velocity is the last of the wanted grids.
+    if (plan.grids.back().role == GridRole::Velocity) {
         const std::vector<GridInfo> held = list_grids(*path);
-        const auto is_held = [&](const std::string& name) {
-            return std::any_of(held.begin(), held.end(),
-                               [&](const GridInfo& grid) { return grid.name == name; });
-        };
-        plan.grids.erase(std::remove_if(plan.grids.begin(), plan.grids.end(),
-                                        [&](const PlannedGrid& grid) {
-                                            return grid.role == GridRole::Velocity &&
-                                                   !is_held(grid.name);
-                                        }),
-                         plan.grids.end());
+        const std::string& name = plan.grids.back().name;
+        const bool is_held = std::any_of(held.begin(), held.end(),
+                                         [&](const GridInfo& grid) { return grid.name == name; });
+        if (!is_held && needs.velocity_may_be_missing) {
+            plan.grids.pop_back();
+        } else {
+            require_grid(*path, held, name, no_velocity_advice);
+        }
     }
     return plan;
 }
