@@ -55,11 +55,12 @@ struct Preparation {
         return grids;
     }
 
-    std::optional<GridPlan> plan(const VolumeDescription& volume, size_t index) const;
-    std::optional<GridPlan> plan_file(const VolumeDescription& volume) const;
-    GridPlan plan_particles(const VolumeDescription& volume) const;
-    GridPlan plan_procedural(const VolumeDescription& volume, size_t index) const;
-    Volume make_volume(const VolumeDescription& volume, size_t index, const GridPlan& plan) const;
+    [[nodiscard]] std::optional<GridPlan> plan(const VolumeDescription& volume, size_t index) const;
+    [[nodiscard]] std::optional<GridPlan> plan_file(const VolumeDescription& volume) const;
+    [[nodiscard]] GridPlan plan_particles(const VolumeDescription& volume) const;
+    [[nodiscard]] GridPlan plan_procedural(const VolumeDescription& volume, size_t index) const;
+    [[nodiscard]] Volume make_volume(const VolumeDescription& volume, size_t index,
+                                     const GridPlan& plan) const;
     void add_environment(Scene& scene) const;
     void add_next_frame(Scene& scene, const std::vector<size_t>& shown) const;
 };
