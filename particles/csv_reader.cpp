@@ -127,6 +127,7 @@ PointBuffer read_csv(const std::string& path, const PointRequest& request)
     PointBuffer buffer;
     buffer.fields = header.fields;
     buffer.bindings = bind_attributes(path, buffer.fields, request.params, request.mask);
+    if (request.header_only) return buffer;
     std::vector<std::vector<Binding>> by_column(buffer.fields.size());
     for (const Binding& binding : buffer.bindings) by_column[binding.field].push_back(binding);
 

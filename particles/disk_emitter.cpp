@@ -51,13 +51,8 @@ EmissionPlan emit_disk(const EmitterParams& params, double since_start)
         {params.turbulence_size, params.turbulence, Vec3(0.0f), params.seed}, since_start);
     const float wobble_time = choose_wobble_time(params);
     const auto fill = [=](ParticleBlock& block, size_t first) {
-        for (size_t i = 0; i < lane_count; ++i) {
-            const auto offset = std::min(static_cast<int64_t>(first + i), population.count - 1);
-            block.id[i] = population.first_id + offset;
-            block.age[i] = population.age(block.id[i]);
-            block.life[i] = block.age[i] / params.lifetime;
-            follow_orbit(params, since_start, block, i);
-        }
+        set_ages(population, params.lifetime, first, block);
+        for (size_t i = 0; i < lane_count; ++i) follow_orbit(params, since_start, block, i);
         if (wobble_time > 0.0f) add_wobble(noise, wobble_time, block);
     };
     return {population.count, 0.25f, 0.25f, true, fill};

@@ -120,6 +120,16 @@ Population steady_population(const EmitterParams& params, double since_start, bo
     return population;
 }
 
+void set_ages(const Population& population, float lifetime, size_t first, ParticleBlock& block)
+{
+    for (size_t i = 0; i < lane_count; ++i) {
+        const auto offset = std::min(static_cast<int64_t>(first + i), population.count - 1);
+        block.id[i] = population.first_id + offset;
+        block.age[i] = population.age(block.id[i]);
+        block.life[i] = block.age[i] / lifetime;
+    }
+}
+
 ParticleSet emit_particles(const EmitterParams& params, double time_s, const AttributeMask& mask)
 {
     check(params);

@@ -39,6 +39,9 @@ struct ParticleBlock {
     Lanes3 v;    ///< velocity [m/s]
 };
 
+/// Sets ids, ages and shares of life of the block whose first particle has index `first`.
+void set_ages(const Population& population, float lifetime, size_t first, ParticleBlock& block);
+
 /// Fills the lanes of one block; `first` is the index of its first particle.
 using EmitBlock = std::function<void(ParticleBlock& block, size_t first)>;
 

@@ -88,6 +88,7 @@ PointBuffer read_npy(const std::string& path, const PointRequest& request)
     check_claim(file, header.shape[0], layout.size);
     check_count(path, header.shape[0], request.params);
     buffer.bindings = bind_attributes(path, buffer.fields, request.params, request.mask);
+    if (request.header_only) return buffer;
     const auto count = static_cast<size_t>(header.shape[0]);
     buffer.resize(count);
     if (header.is_fortran && !header.is_structured)

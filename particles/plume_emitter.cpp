@@ -95,12 +95,7 @@ EmissionPlan emit_plume(const EmitterParams& params, double since_start)
     // The jet leaves the source smooth and breaks up within the first large eddy.
     const float break_up = 1.5f * params.turbulence_size / std::max(params.speed, 1e-3f);
     const auto fill = [=](ParticleBlock& block, size_t first) {
-        for (size_t i = 0; i < lane_count; ++i) {
-            const auto offset = std::min(static_cast<int64_t>(first + i), population.count - 1);
-            block.id[i] = population.first_id + offset;
-            block.age[i] = population.age(block.id[i]);
-            block.life[i] = block.age[i] / params.lifetime;
-        }
+        set_ages(population, params.lifetime, first, block);
         start_at_source(params, block);
         const auto velocity_at = [&](int step, const Lanes3& p, Lanes3& u) {
             const float age = static_cast<float>(step) * steps.dt;

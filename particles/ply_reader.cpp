@@ -168,6 +168,7 @@ PointBuffer read_ply(const std::string& path, const PointRequest& request)
         PointBuffer buffer;
         buffer.fields = fields_of(element);
         buffer.bindings = bind_attributes(path, buffer.fields, request.params, request.mask);
+        if (request.header_only) return buffer;
         buffer.resize(static_cast<size_t>(element.count));
         if (header.format == PlyFormat::Ascii)
             read_ascii(file, element, buffer);

@@ -23,28 +23,42 @@ struct LeafSums {
     alignas(32) std::array<std::array<float, leaf_voxels>, Channels + 1> field;
 };
 
-/// Adds splats to the sums in order. At most a few dozen at a time, see accumulate_leaf.
+/// Rows of a leaf that a support meets.
+struct RowRange {
+    uint32_t x_begin, x_end, y_begin, y_end;
+};
+
+[[nodiscard]] inline RowRange row_range(const TileSplat& s)
+{
+    const auto first = [](float v) {
+        return static_cast<uint32_t>(std::max(0, static_cast<int>(std::ceil(v))));
+    };
+    const auto end = [](float v) {
+        return static_cast<uint32_t>(std::min(leaf_size, static_cast<int>(std::floor(v)) + 1));
+    };
+    return {first(s.x - s.support), end(s.x + s.support), first(s.y - s.support),
+            end(s.y + s.support)};
+}
+
+/// Adds splats to the sums in order; SplatChains::block_size at the most, see accumulate_leaf.
 template <int Channels>
 void accumulate_splats(std::span<const TileSplat> splats, const AttributeComponent* channels,
                        LeafSums<Channels>& sums)
 {
-    const auto first = [](float v) {
-        return static_cast<size_t>(std::max(0, static_cast<int>(std::ceil(v))));
-    };
-    const auto end = [](float v) {
-        return static_cast<size_t>(std::min(leaf_size, static_cast<int>(std::floor(v)) + 1));
-    };
-    for (const TileSplat& s : splats) {
+    // Ranges of rows first: where the processor guesses the length of a loop wrongly, it finds out
+    // at once (2 % of rasterize() at a million particles).
+    std::array<RowRange, SplatChains::block_size> ranges;
+    for (size_t i = 0; i < splats.size(); ++i) ranges[i] = row_range(splats[i]);
+    for (size_t i = 0; i < splats.size(); ++i) {
+        const TileSplat& s = splats[i];
+        const RowRange range = ranges[i];
         const KernelBlock kernel = make_kernel_block(s.x, s.y, s.z, s.support, s.root_density);
         [[maybe_unused]] std::array<float, static_cast<size_t>(std::max(Channels, 1))> value;
         for (size_t c = 0; c < Channels; ++c) {
             value[c] = channels[c].data[s.particle * channels[c].stride];
         }
-        const size_t x_end = end(s.x + s.support);
-        const size_t y_begin = first(s.y - s.support);
-        const size_t y_end = end(s.y + s.support);
-        for (size_t x = first(s.x - s.support); x < x_end; ++x) {
-            for (size_t y = y_begin; y < y_end; ++y) {
+        for (size_t x = range.x_begin; x < range.x_end; ++x) {
+            for (size_t y = range.y_begin; y < range.y_end; ++y) {
                 const Float8 root = eval_row_roots(kernel, x, y);
                 const size_t row = leaf_size * (leaf_size * x + y);
                 float* const density = &sums.field[0][row];

@@ -10,7 +10,6 @@ namespace {
 
 constexpr size_t block_size = 32'768;           ///< particles
 constexpr double splats_per_chunk = 300'000.0;  ///< about 7 MB
-constexpr double splats_per_wave = 16e6;        ///< about 400 MB
 /// Index coordinates stay this far inside the 32-bit range.
 constexpr double largest_index = 2147483647.0 - 1024.0;
 
@@ -171,6 +170,7 @@ RasterPlan make_raster_plan(const ParticleSet& particles, const RasterizeParams&
         blocks[first / block_size] = inspect(particles, plan.rules, first, last);
     });
 
+    const auto splats_per_wave = static_cast<double>(params.max_splats);
     double in_wave = 0.0;
     for (size_t b = 0; b < blocks.size(); ++b) {
         if (blocks[b].bad != SIZE_MAX) {

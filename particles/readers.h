@@ -14,6 +14,9 @@ namespace mote {
 struct PointRequest {
     const CacheParams& params;
     const AttributeMask& mask;
+    /// Stop after the header: which attributes there are and whether the file is as long as it
+    /// claims, but no rows. The header of .vdb points does not name their attributes.
+    bool header_only = false;
 };
 
 /// PLY 1.0: ascii and binary of both byte orders, any properties. Only the element "vertex" is

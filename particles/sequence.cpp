@@ -175,7 +175,7 @@ std::optional<std::string> sequence_path(const SequenceParams& sequence, int sce
 std::optional<std::string> resolve_sequence(const SequenceParams& sequence, int scene_frame,
                                             const std::string& base_dir)
 {
-    const auto path = sequence_path(sequence, scene_frame, base_dir);
+    auto path = sequence_path(sequence, scene_frame, base_dir);
     std::error_code error;
     if (!path || fs::is_regular_file(*path, error)) return path;
     if (fs::exists(*path, error)) {

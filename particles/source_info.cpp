@@ -70,4 +70,15 @@ ParticleInfo describe_particle_file(const std::string& path, const CacheParams& 
     return describe_particles(read_particle_file(path, params, fps));
 }
 
+ParticleHeader describe_particle_header(const std::string& path, const CacheParams& params)
+{
+    const PointBuffer buffer = read_points(path, {params, {}, true});
+    if (buffer.bindings.empty()) return {};
+    std::vector<std::string> names;
+    for (const Binding& binding : buffer.bindings) {
+        if (binding.component == 0) names.emplace_back(attribute_name(binding.attribute));
+    }
+    return {names};
+}
+
 }  // namespace mote

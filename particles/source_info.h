@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,5 +37,16 @@ struct ParticleInfo {
 [[nodiscard]] ParticleInfo describe_particle_file(const std::string& path,
                                                   const CacheParams& params = {},
                                                   double fps = 24.0);
+
+/// What the header of a particle file tells, its particles unread.
+struct ParticleHeader {
+    /// mote's names of the attributes that it has; empty: only its particles tell (.vdb points).
+    std::optional<std::vector<std::string>> attributes;
+};
+
+/// Cost: a few milliseconds, however large the file. Throws as particles_at does for what a header
+/// can show: another format, missing positions, more particles than the file has room for.
+[[nodiscard]] ParticleHeader describe_particle_header(const std::string& path,
+                                                      const CacheParams& params = {});
 
 }  // namespace mote

@@ -26,12 +26,10 @@ using openvdb::points::PointDataTree;
     throw Error(ExitCode::Input, what);
 }
 
-std::vector<PointDataGrid::Ptr> read_point_grids(const std::string& path)
+/// Names of the grids of points; fails if there are none.
+std::vector<std::string> point_grid_names(openvdb::io::File& file)
 {
-    openvdb::io::File file(path);
-    file.setCopyMaxBytes(0);
-    file.open(/*delayLoad=*/false);
-    std::vector<PointDataGrid::Ptr> grids;
+    std::vector<std::string> names;
     std::string others;
     for (auto name = file.beginName(); name != file.endName(); ++name) {
         const auto metadata = file.readGridMetadata(name.gridName());
@@ -40,11 +38,24 @@ std::vector<PointDataGrid::Ptr> read_point_grids(const std::string& path)
                                   printable(name.gridName(), 40), metadata->valueType());
             continue;
         }
-        grids.push_back(openvdb::gridPtrCast<PointDataGrid>(file.readGrid(name.gridName())));
+        names.push_back(name.gridName());
     }
-    if (!grids.empty()) return grids;
+    if (!names.empty()) return names;
     fail(fmt::format("no points; the file holds {}. Fog volumes belong into a [[volumes]] entry",
                      others.empty() ? "no grids" : others));
+}
+
+std::vector<PointDataGrid::Ptr> read_point_grids(const std::string& path, bool header_only)
+{
+    openvdb::io::File file(path);
+    file.setCopyMaxBytes(0);
+    file.open(/*delayLoad=*/false);
+    std::vector<PointDataGrid::Ptr> grids;
+    for (const std::string& name : point_grid_names(file)) {
+        if (header_only) continue;
+        grids.push_back(openvdb::gridPtrCast<PointDataGrid>(file.readGrid(name)));
+    }
+    return grids;
 }
 
 int components_of(const std::string& type)
@@ -247,7 +258,8 @@ void read_into(const std::string& path, const PointRequest& request, uint64_t fi
                const SharedColumns& columns)
 {
     // Never destroyed: freeing a tree is a parallel loop, and the process ends right after this.
-    const auto& grids = *new std::vector<PointDataGrid::Ptr>(read_point_grids(path));
+    const auto& grids =
+        *new std::vector<PointDataGrid::Ptr>(read_point_grids(path, request.header_only));
     const size_t count = count_points(grids, columns.capacity(), file_bytes);
     SharedHeader& header = columns.header();
     header.count = count;

@@ -28,4 +28,9 @@ struct GridInfo {
 [[nodiscard]] std::vector<GridInfo> list_grids(const std::string& path,
                                                const GridBudget& budget = {});
 
+/// Throws Error(Input) unless `name` is among the grids `held` by the file at `path`. The message
+/// lists what the file holds; `advice`, if any, says what else could be done.
+void require_grid(const std::string& path, const std::vector<GridInfo>& held,
+                  const std::string& name, const std::string& advice = "");
+
 }  // namespace mote

@@ -169,24 +169,19 @@ bool is_vector(const std::string& type)
     return type == "vec3s" || type == "vec3d";
 }
 
+std::vector<GridInfo>::const_iterator find_grid(const std::vector<GridInfo>& infos,
+                                                const std::string& name)
+{
+    return std::find_if(infos.begin(), infos.end(),
+                        [&](const GridInfo& info) { return info.name == name; });
+}
+
 /// Refuses by metadata alone: unknown names, kinds that cannot be rendered, claims over budget.
 void check_choice(const std::string& path, const std::vector<GridInfo>& infos,
                   const std::string& wanted, const GridBudget& budget)
 {
-    const auto found = std::find_if(infos.begin(), infos.end(),
-                                    [&](const GridInfo& info) { return info.name == wanted; });
-    if (found == infos.end()) {
-        std::vector<std::string> names;
-        bool only_points = !infos.empty();
-        for (const GridInfo& info : infos) {
-            names.push_back(info.name);
-            only_points &= info.value_type.starts_with("ptdata");
-        }
-        throw Error(ExitCode::Input,
-                    fmt::format("{}: no grid \"{}\"{}; it holds {}{}", path, printable(wanted),
-                                did_you_mean(wanted, names), list(infos),
-                                only_points ? ". Points belong into a [[particles]] entry" : ""));
-    }
+    require_grid(path, infos, wanted);
+    const auto found = find_grid(infos, wanted);
     const std::string what = describe(path, wanted);
     if (found->grid_class == "level set") {
         throw Error(ExitCode::Input, what +
@@ -267,6 +262,23 @@ std::vector<GridInfo> list_grids(const std::string& path, const GridBudget& budg
     const int64_t size = checked_size(path, budget);
     check_in_child(path, size, {}, [&] { static_cast<void>(read_infos(path)); });
     return guarded(path, [&] { return read_infos(path); });
+}
+
+void require_grid(const std::string& path, const std::vector<GridInfo>& held,
+                  const std::string& name, const std::string& advice)
+{
+    if (find_grid(held, name) != held.end()) return;
+    std::vector<std::string> names;
+    bool only_points = !held.empty();
+    for (const GridInfo& info : held) {
+        names.push_back(info.name);
+        only_points &= info.value_type.starts_with("ptdata");
+    }
+    throw Error(ExitCode::Input,
+                fmt::format("{}: no grid \"{}\"{}; it holds {}{}{}{}", path, printable(name),
+                            did_you_mean(name, names), list(held),
+                            only_points ? ". Points belong into a [[particles]] entry" : "",
+                            advice.empty() ? "" : ". ", advice));
 }
 
 openvdb::GridPtrVec read_grids(const std::string& path, const std::vector<std::string>& names,

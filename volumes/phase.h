@@ -48,11 +48,13 @@ struct Phase {
         u.x = second ? u.x / phase.weight_b : (u.x - phase.weight_b) / (1.0f - phase.weight_b);
         u.x = std::min(u.x, one_minus_epsilon);
     }
-    // Inverse of the distribution function, as 1 - cos: exact for any g, 0 included.
-    const float w = 1.0f - g + 2.0f * g * u.x;
+    // Inverse of the distribution function, as 1 - |cos|: exact for any g, 0 included. Backward
+    // lobes are mirrored forward ones: 1 + cos would be lost to rounding where it is small.
+    const float a = std::abs(g);
+    const float w = 1.0f - a + 2.0f * a * u.x;
     const float off_axis =
-        std::min(2.0f, (1.0f - g) * (1.0f - u.x) / w * ((1.0f - g * g) / w + 1.0f - g));
-    const float cos_theta = 1.0f - off_axis;
+        std::min(2.0f, (1.0f - a) * (1.0f - u.x) / w * ((1.0f - a * a) / w + 1.0f - a));
+    const float cos_theta = std::copysign(1.0f, g) * (1.0f - off_axis);
     const float sin_theta = std::sqrt(off_axis * (2.0f - off_axis));
     const float phi = 2.0f * pi * u.y;
     return make_frame(-wo) * Vec3(sin_theta * std::cos(phi), sin_theta * std::sin(phi), cos_theta);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -89,6 +90,26 @@ CacheInput input_of_files(const CacheOptions& options)
     return input;
 }
 
+/// Says which frames are copies of another because the source's files end before.
+void warn_of_held_frames(const CacheInput& input)
+{
+    const auto* cache = std::get_if<CacheParams>(&input.source);
+    if (cache == nullptr || cache->sequence.outside != OutsideRange::Hold) return;
+    const auto range = sequence_range(cache->sequence, input.base_dir);
+    if (!range) return;
+    const int64_t first = int64_t{range->first} - cache->sequence.offset;
+    const int64_t last = int64_t{range->last} - cache->sequence.offset;
+    std::vector<int> held;
+    for (const int frame : input.frames) {
+        if (frame < first || frame > last) held.push_back(frame);
+    }
+    if (held.empty()) return;
+    spdlog::warn(
+        "{}: has files for frames {} to {}; frames {} repeat the nearest of them, choose others "
+        "with --frames",
+        printable(cache->sequence.pattern), first, last, printable(format_frames(held)));
+}
+
 GridChannels channels_of(const std::string& list)
 {
     GridChannels channels;
@@ -170,6 +191,7 @@ void run_cache(const CacheOptions& options)
     const CacheInput input =
         is_scene(options.input) ? input_of_scene(options) : input_of_files(options);
     const std::vector<CacheFiles> files = cache_files(options, input.frames);
+    warn_of_held_frames(input);
     Progress progress(progress_style(options.progress, options.log.quiet),
                       static_cast<int>(input.frames.size()), stderr_terminal());
     run_with_threads(chosen_threads(options.threads), [&] {

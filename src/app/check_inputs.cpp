@@ -1,17 +1,21 @@
 #include "app/check_inputs.h"
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
+#include <optional>
+#include <set>
+#include <tuple>
 #include <variant>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "core/text.h"
 #include "image/read_image.h"
 #include "particles/sequence.h"
 #include "particles/source_info.h"
 #include "render/aov.h"
+#include "scene/prepare.h"
 #include "volumes/grid_info.h"
 
 namespace mote {
@@ -20,63 +24,88 @@ namespace {
 
 constexpr size_t max_problems = 20;
 
-/// Runs `check` and keeps the message if it throws; false then.
-template <class Check>
-bool keep_message(std::vector<std::string>& problems, Check&& check)
-{
-    try {
-        check();
-        return true;
-    } catch (const Error& error) {
-        // The same missing file at many frames (outside = "hold") is one problem.
-        if (std::find(problems.begin(), problems.end(), error.what()) == problems.end()) {
-            problems.emplace_back(error.what());
+/// A check under way.
+struct Check {
+    using Clock = std::chrono::steady_clock;
+
+    const SceneDescription& scene;
+    const std::vector<int>& frames;
+    Clock::time_point deadline;
+    InputReport report;
+
+    [[nodiscard]] bool is_over() const { return report.problems.size() >= max_problems; }
+
+    /// Runs `step` and keeps the message if it throws; false then.
+    template <class Step>
+    bool keep_message(Step&& step)
+    {
+        std::vector<std::string>& problems = report.problems;
+        try {
+            step();
+            return true;
+        } catch (const Error& error) {
+            // The same missing file at many frames (outside = "hold") is one problem.
+            if (std::find(problems.begin(), problems.end(), error.what()) == problems.end()) {
+                problems.emplace_back(error.what());
+            }
+            return false;
         }
-        return false;
     }
-}
 
-/// The file of the first frame that shows one, with all others checked for being there.
-std::string check_sequence(const SequenceParams& sequence, const std::vector<int>& frames,
-                           const std::string& base_dir, std::vector<std::string>& problems)
+    std::vector<std::string> shown_files(const SequenceParams& sequence);
+
+    /// Calls open(path, is_first) for the files of a sequence: for the first one always, for the
+    /// others while there is time.
+    template <class Open>
+    void open_files(const SequenceParams& sequence, Open&& open)
+    {
+        bool is_first = true;
+        for (const std::string& file : shown_files(sequence)) {
+            if (is_over() || (!is_first && Clock::now() > deadline)) return;
+            keep_message([&] { open(file, is_first); });
+            ++report.opened_files;
+            is_first = false;
+        }
+    }
+};
+
+/// The files that the frames show, each once, all of them there.
+std::vector<std::string> Check::shown_files(const SequenceParams& sequence)
 {
-    std::string first;
+    std::vector<std::string> files;
+    std::set<std::string> known;
+    SequenceParams ranged = sequence;
+    const bool has_files = keep_message([&] {
+        // Once, not for each frame: it may list a folder.
+        const auto range = sequence_range(sequence, scene.base_dir);
+        if (range) std::tie(ranged.first, ranged.last) = std::pair(range->first, range->last);
+    });
     for (const int frame : frames) {
-        if (problems.size() >= max_problems) break;
-        const bool good = keep_message(problems, [&] {
-            const auto path = resolve_sequence(sequence, frame, base_dir);
-            if (path && first.empty()) first = *path;
+        if (!has_files || is_over()) break;
+        keep_message([&] {
+            const auto path = resolve_sequence(ranged, frame, scene.base_dir);
+            if (path && known.insert(*path).second) files.push_back(*path);
         });
-        // A sequence without any file fails alike at every frame.
-        if (!good && first.empty()) break;
     }
-    return first;
+    report.sequence_files += files.size();
+    return files;
 }
 
-/// Names of the grids that rendering this volume reads.
-std::vector<std::string> needed_grids(const VolumeDescription& volume, bool needs_velocity)
+/// Grids that rendering this volume reads must be in the file.
+void require_grids(const std::string& path, const VolumeDescription& volume, bool needs_velocity)
 {
-    std::vector<std::string> names{volume.density_grid};
-    if (volume.emission.blackbody_scale > 0.0f) names.push_back(volume.temperature_grid);
-    if (volume.emission.emission_scale > 0.0f) names.push_back(volume.emission_grid);
-    if (volume.use_color) names.push_back(volume.color_grid);
-    if (needs_velocity) names.push_back(volume.velocity_grid);
-    return names;
-}
-
-void require_grids(const std::string& path, const std::vector<std::string>& needed)
-{
-    std::vector<std::string> held;
-    for (const GridInfo& grid : list_grids(path)) held.push_back(grid.name);
-    for (const std::string& name : needed) {
-        if (std::find(held.begin(), held.end(), name) != held.end()) continue;
-        throw Error(
-            ExitCode::Input,
-            fmt::format(
-                "{}: no grid \"{}\"{}; the file holds {}", path, printable(name),
-                did_you_mean(name, held),
-                held.empty() ? "none" : printable(fmt::format("{}", fmt::join(held, ", ")))));
-    }
+    const std::vector<GridInfo> held = list_grids(path);
+    const auto require = [&](bool is_used, const std::string& name, const char* advice = "") {
+        if (is_used) require_grid(path, held, name, advice);
+    };
+    const Emission& emission = volume.emission;
+    require(true, volume.density_grid);
+    require(emission.blackbody_scale > 0.0f && !volume.temperature_grid.empty(),
+            volume.temperature_grid);
+    require(emission.emission_scale > 0.0f, volume.emission_grid);
+    require(volume.use_color, volume.color_grid);
+    require(needs_velocity && !volume.velocity_grid.empty(), volume.velocity_grid,
+            no_velocity_advice);
 }
 
 void require_file(const std::string& file, const std::string& base_dir, const std::string& user)
@@ -95,62 +124,77 @@ std::string title(const char* kind, const std::string& name, size_t index)
 
 /// Volumes may ask for attributes that a particle file need not have.
 void require_attributes(const SceneDescription& scene, const ParticlesDescription& system,
-                        const std::string& path, const ParticleInfo& info, bool needs_velocity)
+                        const std::string& path, const std::vector<std::string>& attributes,
+                        bool needs_velocity)
 {
-    const auto require = [&](const char* attribute, const char* user) {
-        for (const AttributeRange& range : info.attributes) {
-            if (range.name == attribute) return;
-        }
+    const auto require = [&](bool is_used, const char* attribute, const char* user) {
+        const bool is_there =
+            std::find(attributes.begin(), attributes.end(), attribute) != attributes.end();
+        if (is_there || !is_used) return;
         throw Error(ExitCode::Input,
                     fmt::format("{}: particles \"{}\" have no {}, which {} needs; name the "
                                 "file's attribute under \"attributes\" or do without",
                                 path, system.name, attribute, user));
     };
-    if (info.count == 0) return;
     for (const VolumeDescription& volume : scene.volumes) {
         if (volume.particles != system.name) continue;
-        if (volume.use_color) require("color", "\"use_color\"");
-        if (volume.emission.blackbody_scale > 0.0f) require("temperature", "blackbody emission");
-        if (needs_velocity) require("velocity", "the motion layer");
+        require(volume.use_color, "color", "\"use_color\"");
+        require(volume.emission.blackbody_scale > 0.0f, "temperature", "blackbody emission");
+        require(needs_velocity, "velocity", "the motion layer");
     }
+}
+
+/// Names of the attributes of a particle file; empty where there are no particles, or where only
+/// they tell.
+std::optional<std::vector<std::string>> attributes_of(const std::string& path,
+                                                      const CacheParams& cache, double fps,
+                                                      bool read_particles)
+{
+    if (!read_particles) return describe_particle_header(path, cache).attributes;
+    const ParticleInfo info = describe_particle_file(path, cache, fps);
+    if (info.count == 0) return std::nullopt;
+    std::vector<std::string> names;
+    for (const AttributeRange& range : info.attributes) names.push_back(range.name);
+    return names;
 }
 
 }  // namespace
 
-std::vector<std::string> check_inputs(const SceneDescription& scene, const std::vector<int>& frames)
+InputReport check_inputs(const SceneDescription& scene, const std::vector<int>& frames,
+                         double max_seconds)
 {
-    std::vector<std::string> problems;
+    const auto allowed = std::chrono::duration_cast<Check::Clock::duration>(
+        std::chrono::duration<double>(max_seconds));
+    Check check{scene, frames, Check::Clock::now() + allowed, {}};
     const bool needs_velocity = parse_aovs(scene.output.aovs).needs_motion();
     for (const ParticlesDescription& system : scene.particles) {
         const auto* cache = std::get_if<CacheParams>(&system.source);
         if (cache == nullptr) continue;
-        const std::string first = check_sequence(cache->sequence, frames, scene.base_dir, problems);
-        if (first.empty()) continue;
-        keep_message(problems, [&] {
-            const ParticleInfo info = describe_particle_file(first, *cache, scene.fps);
-            require_attributes(scene, system, first, info, needs_velocity);
+        check.open_files(cache->sequence, [&](const std::string& path, bool is_first) {
+            const auto attributes = attributes_of(path, *cache, scene.fps, is_first);
+            if (attributes) require_attributes(scene, system, path, *attributes, needs_velocity);
         });
     }
     for (const VolumeDescription& volume : scene.volumes) {
         if (!volume.file) continue;
-        const std::string first = check_sequence(*volume.file, frames, scene.base_dir, problems);
-        if (first.empty()) continue;
-        keep_message(problems, [&] { require_grids(first, needed_grids(volume, needs_velocity)); });
+        check.open_files(*volume.file, [&](const std::string& path, bool) {
+            require_grids(path, volume, needs_velocity);
+        });
     }
     for (size_t i = 0; i < scene.lights.size(); ++i) {
         const LightDescription& light = scene.lights[i];
         if (light.image.empty()) continue;
-        keep_message(problems, [&] {
+        check.keep_message([&] {
             require_file(light.image, scene.base_dir, title("light", light.name, i));
             (void)read_image((std::filesystem::path(scene.base_dir) / light.image).string());
         });
     }
     for (size_t i = 0; i < scene.meshes.size(); ++i) {
         const MeshDescription& mesh = scene.meshes[i];
-        keep_message(problems,
-                     [&] { require_file(mesh.file, scene.base_dir, title("mesh", mesh.name, i)); });
+        check.keep_message(
+            [&] { require_file(mesh.file, scene.base_dir, title("mesh", mesh.name, i)); });
     }
-    return problems;
+    return check.report;
 }
 
 }  // namespace mote

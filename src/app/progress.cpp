@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <utility>
@@ -49,7 +50,7 @@ std::string bar_line(double fraction, const std::string& text, int columns)
 std::string format_duration(double seconds)
 {
     if (!(seconds >= 0.0) || seconds > 1e9) return "?";
-    const auto s = static_cast<int64_t>(seconds + 0.5);
+    const int64_t s = std::llround(seconds);
     if (s >= 3600) return fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
     if (s >= 60) return fmt::format("{}:{:02}", s / 60, s % 60);
     return fmt::format("{} s", s);

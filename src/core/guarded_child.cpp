@@ -44,14 +44,14 @@ void set_limit(decltype(RLIMIT_CPU) resource, int64_t soft, int64_t hard)
 }
 
 /// First byte of the child's report.
-enum Report : char { done = 'd', failed = 'f', out_of_memory = 'm' };
+enum Report : char { Done = 'd', Failed = 'f', OutOfMemory = 'm' };
 
 void send(int pipe_end, char kind, const char* text)
 {
     char buffer[2048];
     buffer[0] = kind;
     const size_t length = std::min(std::strlen(text), sizeof buffer - 1);
-    std::memcpy(buffer + 1, text, length);
+    std::copy_n(text, length, buffer + 1);
     // Less than PIPE_BUF: written whole or not at all, and a lost report is read as a crash.
     [[maybe_unused]] const ssize_t written = write(pipe_end, buffer, length + 1);
 }
@@ -71,18 +71,18 @@ void send(int pipe_end, char kind, const char* text)
     }
     try {
         task();
-        send(pipe_end, done, "");
+        send(pipe_end, Done, "");
     } catch (const Error& e) {
-        send(pipe_end, e.code() == ExitCode::Memory ? out_of_memory : failed, e.what());
+        send(pipe_end, e.code() == ExitCode::Memory ? OutOfMemory : Failed, e.what());
     } catch (const std::bad_alloc&) {
-        send(pipe_end, out_of_memory, "it asks for more memory than a file of its size can need");
+        send(pipe_end, OutOfMemory, "it asks for more memory than a file of its size can need");
     } catch (const std::exception& e) {  // the library's own words say what, but not what to do
-        send(pipe_end, failed,
+        send(pipe_end, Failed,
              fmt::format("damaged or of another format ({}); copy or write it again",
                          printable(e.what()))
                  .c_str());
     } catch (...) {
-        send(pipe_end, failed, "unknown failure");
+        send(pipe_end, Failed, "unknown failure");
     }
     _exit(0);
 }
@@ -210,8 +210,8 @@ void run_in_child(const std::string& what, const ChildLimits& limits,
     for (int again = 0; again < 8 && out.slept; ++again) out = run_once(what, limits, task);
     if (out.ran_out_of_cpu()) out = run_once(what, limits, task);
     if (!out.report.empty()) {
-        if (out.report[0] == done) return;
-        const ExitCode code = out.report[0] == out_of_memory ? ExitCode::Memory : ExitCode::Input;
+        if (out.report[0] == Done) return;
+        const ExitCode code = out.report[0] == OutOfMemory ? ExitCode::Memory : ExitCode::Input;
         const std::string text = printable(out.report.substr(1), 2000);
         if (text.starts_with(what + ":")) throw Error(code, text);  // it names the file itself
         throw Error(code, fmt::format("{}: {}", what, text));

@@ -21,13 +21,16 @@
 
 namespace mote {
 
+/// Whether this is a sanitizer build: several times slower and larger than others.
+#if defined(MOTE_ADDRESS_SANITIZER) || defined(MOTE_THREAD_SANITIZER)
+inline constexpr bool is_instrumented = true;
+#else
+inline constexpr bool is_instrumented = false;
+#endif
+
 /// False in sanitizer builds: they reserve terabytes of address space, so that a limit of it would
 /// stop the process at once.
-#if defined(MOTE_ADDRESS_SANITIZER) || defined(MOTE_THREAD_SANITIZER)
-inline constexpr bool can_limit_memory = false;
-#else
-inline constexpr bool can_limit_memory = true;
-#endif
+inline constexpr bool can_limit_memory = !is_instrumented;
 
 /// Tells the thread sanitizer that everything before give() happens before what follows take().
 /// For code that hands work over inside a library that is not instrumented; elsewhere empty.

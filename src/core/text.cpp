@@ -29,6 +29,33 @@ size_t edit_distance(std::string_view a, std::string_view b)
     return last[b.size()];
 }
 
+/// Bytes of the UTF-8 character that `text` begins with (Unicode 15, table 3-7: no overlong forms,
+/// no surrogates); 0 if it begins with none.
+size_t character_length(std::string_view text)
+{
+    const auto byte = [&](size_t i) { return static_cast<unsigned char>(text[i]); };
+    const unsigned char lead = byte(0);
+    if (lead < 0x80) return 1;
+    if (lead < 0xc2 || lead > 0xf4) return 0;
+    const size_t length = lead < 0xe0 ? 2 : lead < 0xf0 ? 3 : 4;
+    if (text.size() < length) return 0;
+    for (size_t i = 1; i < length; ++i) {
+        if ((byte(i) & 0xc0) != 0x80) return 0;
+    }
+    const bool is_overlong = (lead == 0xe0 && byte(1) < 0xa0) || (lead == 0xf0 && byte(1) < 0x90);
+    const bool is_surrogate = lead == 0xed && byte(1) >= 0xa0;
+    const bool is_too_large = lead == 0xf4 && byte(1) >= 0x90;
+    return is_overlong || is_surrogate || is_too_large ? 0 : length;
+}
+
+/// Control characters of ASCII and of Latin-1 (U+0080 to U+009F: terminals obey those too).
+bool is_control(std::string_view character)
+{
+    const auto lead = static_cast<unsigned char>(character[0]);
+    if (character.size() == 1) return lead < 0x20 || lead == 0x7f;
+    return lead == 0xc2 && static_cast<unsigned char>(character[1]) < 0xa0;
+}
+
 }  // namespace
 
 std::string did_you_mean(std::string_view word, std::span<const std::string> known)
@@ -48,11 +75,18 @@ std::string did_you_mean(std::string_view word, std::span<const std::string> kno
 
 std::string printable(std::string_view text, size_t max_length)
 {
-    std::string out(text.substr(0, max_length));
-    for (char& c : out) {
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+    std::string out;
+    while (!text.empty()) {
+        const size_t length = character_length(text);
+        const std::string_view character = text.substr(0, std::max<size_t>(length, 1));
+        if (out.size() + character.size() > max_length) return out + "...";
+        if (length == 0 || is_control(character)) {
+            out += '?';
+        } else {
+            out += character;
+        }
+        text.remove_prefix(character.size());
     }
-    if (text.size() > max_length) out += "...";
     return out;
 }
 

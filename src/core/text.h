@@ -11,8 +11,9 @@ namespace mote {
 /// none is near enough to be meant.
 [[nodiscard]] std::string did_you_mean(std::string_view word, std::span<const std::string> known);
 
-/// Third-party or file text made safe for one line of a message: control characters replaced,
-/// cut after `max_length` bytes.
+/// Third-party or file text made safe for one line of a message: valid UTF-8, with a "?" for each
+/// control character and each byte that belongs to no character, and "..." in place of what goes
+/// beyond `max_length` bytes.
 [[nodiscard]] std::string printable(std::string_view text, size_t max_length = 200);
 
 /// "1.5 GB" from a byte count.

@@ -50,7 +50,7 @@ std::string suggest_key(const std::string& word, const std::vector<std::string>&
     for (size_t i = 0; i < known.size(); ++i) {
         if (contains_word(also[i], word)) return fmt::format(" (did you mean \"{}\"?)", known[i]);
     }
-    if (const std::string direct = did_you_mean(word, known); !direct.empty()) return direct;
+    if (std::string direct = did_you_mean(word, known); !direct.empty()) return direct;
     for (const std::string& key : known) {
         const size_t underscore = key.find('_');
         if (underscore == std::string::npos) continue;

@@ -63,7 +63,7 @@ class NodeBinder : public FieldVisitor {
     void wrong_kind(const Field& field, const Node& node, const std::string& wanted);
     bool check_range(const Field& field, const Node& node, double value);
     void know(const Field& field);
-    std::string place() const { return levels_.back().label; }
+    [[nodiscard]] std::string place() const { return levels_.back().label; }
 
     Problems& problems_;
     std::vector<Level> levels_;

@@ -137,7 +137,10 @@ void describe(FieldVisitor& v, VolumeDescription& volume)
     visit(v, {.key = "emission_grid", .doc = "Read only if emission.scale is above 0"},
           volume.emission_grid);
     visit(v, {.key = "color_grid", .doc = "Read only with use_color"}, volume.color_grid);
-    visit(v, {.key = "velocity_grid", .doc = "Read only where motion is asked for; [m/s]"},
+    visit(v,
+          {.key = "velocity_grid",
+           .doc = "Read only where motion is asked for; [m/s]; \"\": the file has none, the volume "
+                  "is at rest"},
           volume.velocity_grid);
     visit_transform(v, volume.transform);
 }

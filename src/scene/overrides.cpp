@@ -123,6 +123,7 @@ void apply_override(Node& root, const std::string& text, int index, Problems& pr
         if (is_last) {
             value.key = std::move(node->key);
             *node = std::move(value);
+            return;
         }
     }
 }

@@ -55,11 +55,12 @@ struct Preparation {
         return grids;
     }
 
-    std::optional<GridPlan> plan(const VolumeDescription& volume, size_t index) const;
-    std::optional<GridPlan> plan_file(const VolumeDescription& volume) const;
-    GridPlan plan_particles(const VolumeDescription& volume) const;
-    GridPlan plan_procedural(const VolumeDescription& volume, size_t index) const;
-    Volume make_volume(const VolumeDescription& volume, size_t index, const GridPlan& plan) const;
+    [[nodiscard]] std::optional<GridPlan> plan(const VolumeDescription& volume, size_t index) const;
+    [[nodiscard]] std::optional<GridPlan> plan_file(const VolumeDescription& volume) const;
+    [[nodiscard]] GridPlan plan_particles(const VolumeDescription& volume) const;
+    [[nodiscard]] GridPlan plan_procedural(const VolumeDescription& volume, size_t index) const;
+    [[nodiscard]] Volume make_volume(const VolumeDescription& volume, size_t index,
+                                     const GridPlan& plan) const;
     void add_environment(Scene& scene) const;
     void add_next_frame(Scene& scene, const std::vector<size_t>& shown) const;
 };
@@ -69,18 +70,17 @@ std::optional<GridPlan> Preparation::plan_file(const VolumeDescription& volume) 
     const auto path = resolve_sequence(*volume.file, frame, description.base_dir);
     if (!path) return std::nullopt;
     GridPlan plan{FilePlan{*path}, file_version(*path), wanted_grids(volume)};
-    if (needs.velocity && needs.velocity_may_be_missing) {
+    // The velocity is the last of the wanted grids.
+    if (plan.grids.back().role == GridRole::Velocity) {
         const std::vector<GridInfo> held = list_grids(*path);
-        const auto is_held = [&](const std::string& name) {
-            return std::any_of(held.begin(), held.end(),
-                               [&](const GridInfo& grid) { return grid.name == name; });
-        };
-        plan.grids.erase(std::remove_if(plan.grids.begin(), plan.grids.end(),
-                                        [&](const PlannedGrid& grid) {
-                                            return grid.role == GridRole::Velocity &&
-                                                   !is_held(grid.name);
-                                        }),
-                         plan.grids.end());
+        const std::string& name = plan.grids.back().name;
+        const bool is_held = std::any_of(held.begin(), held.end(),
+                                         [&](const GridInfo& grid) { return grid.name == name; });
+        if (!is_held && needs.velocity_may_be_missing) {
+            plan.grids.pop_back();
+        } else {
+            require_grid(*path, held, name, no_velocity_advice);
+        }
     }
     return plan;
 }

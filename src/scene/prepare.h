@@ -43,6 +43,11 @@ struct PrepareNeeds {
     bool velocity_may_be_missing = false;
 };
 
+/// What to do about a volume file without velocities when the motion layer is asked for.
+inline constexpr const char* no_velocity_advice =
+    "The motion layer needs it: name the file's grid by \"velocity_grid\", set that to \"\" for a "
+    "volume at rest, or leave \"motion\" out of output.aovs";
+
 /// Everything of `description` at a whole frame, ready to render. The one place where particles,
 /// grids and media meet. Throws Error(Input) naming file and grid.
 [[nodiscard]] Scene prepare_frame(const SceneDescription& description, int frame,

@@ -16,7 +16,8 @@ struct Finished {
 };
 
 /// The built executable, running in a working folder of its own. Output goes to files there, so
-/// that no pipe can fill up. Killed after a minute.
+/// that no pipe can fill up. Killed after a minute (ten under a
+/// sanitizer).
 class RunningMote {
   public:
     /// `before_exec` runs in the child, for limits.
@@ -24,7 +25,7 @@ class RunningMote {
                 const std::function<void()>& before_exec = {});
 
     void send(int signal) const;
-    /// Waits until stderr holds `text`; false if the program ended or a minute passed first.
+    /// Waits until stderr holds `text`; false if the program ended or hangs.
     [[nodiscard]] bool wait_for(const std::string& text);
     [[nodiscard]] Finished wait();
 

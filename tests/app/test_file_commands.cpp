@@ -46,55 +46,33 @@ TEST(FileCommands, CachedParticlesAreReadBackAndRasterised)
     EXPECT_EQ(run_mote(folder.path(), {"info", "e.0002.vdb"}).exit_code, 0);
 }
 
-TEST(FileCommands, CheckNamesMissingFilesAndGrids)
+TEST(FileCommands, CachingPastTheLastFileOfAHeldSequenceIsSaid)
 {
     const TemporaryFolder folder;
-    folder.write("dust.toml", dust_scene);
-    ASSERT_EQ(
-        run_mote(folder.path(), {"cache", "dust.toml", "--frames", "1", "--grids", "d.####.vdb"})
-            .exit_code,
-        0);
-    folder.write("scene.toml", R"(
-[[volumes]]
-file = { path = "d.0001.vdb" }
-density_grid = "densty"
-[[volumes]]
-file = { path = "none.####.vdb" }
-)");
-    const Finished check = run_mote(folder.path(), {"check", "scene.toml"});
-    EXPECT_EQ(check.exit_code, 3);
-    EXPECT_TRUE(contains(check.err, "no grid \"densty\" (did you mean \"density\"?)")) << check.err;
-    EXPECT_TRUE(contains(check.err, "none.####.vdb")) << check.err;
-    EXPECT_EQ(run_mote(folder.path(), {"check", "dust.toml"}).exit_code, 0);
-}
-
-TEST(FileCommands, CheckOpensImagesAndLooksForTheAttributesInUse)
-{
-    const TemporaryFolder folder;
-    folder.write("dust.csv", "x,y,z\n0,0,0\n1,0,0\n");
-    folder.write("sky.exr", "no image");
+    folder.write("dust.1.csv", "x,y,z\n0,0,0\n");
+    folder.write("dust.2.csv", "x,y,z\n1,0,0\n");
     folder.write("scene.toml", R"(
 [[particles]]
 name = "dust"
-file = "dust.csv"
+file = { path = "dust.#.csv", offset = -10, outside = "hold" }
 [[volumes]]
 particles = "dust"
-use_color = true
-[[lights]]
-type = "environment"
-image = "sky.exr"
 )");
-    const Finished check = run_mote(folder.path(), {"check", "scene.toml"});
-    EXPECT_EQ(check.exit_code, 3);
-    EXPECT_TRUE(contains(check.err, "dust.csv: particles \"dust\" have no color")) << check.err;
-    EXPECT_TRUE(contains(check.err, "it is no OpenEXR file, in spite of its name")) << check.err;
-    EXPECT_EQ(run_mote(folder.path(), {"check", "scene.toml", "--set", "volumes.0.use_color=false",
-                                       "--set", "lights.0.image=\"\""})
-                  .exit_code,
-              0);
-    const Finished missing =
-        run_mote(folder.path(), {"check", "scene.toml", "--set", "lights.0.image=none.exr"});
-    EXPECT_TRUE(contains(missing.err, "no such file, used by light 0")) << missing.err;
+    const auto cache = [&](const char* input, const char* frames, const char* set) {
+        return run_mote(folder.path(), {"cache", input, "--frames", frames, "--points",
+                                        "p.####.vdb", "--set", set});
+    };
+    const Finished files = run_mote(
+        folder.path(), {"cache", "dust.#.csv", "--frames", "0-5", "--points", "p.####.vdb"});
+    EXPECT_EQ(files.exit_code, 0) << files.err;
+    EXPECT_TRUE(contains(files.err, "files for frames 1 to 2; frames 0,3-5 repeat")) << files.err;
+    const Finished scene = cache("scene.toml", "11-15", "fps=24");
+    EXPECT_EQ(scene.exit_code, 0) << scene.err;
+    EXPECT_TRUE(contains(scene.err, "files for frames 11 to 12; frames 13-15 repeat")) << scene.err;
+    EXPECT_FALSE(contains(cache("scene.toml", "11-12", "fps=24").err, "warning"));
+    const Finished hidden = cache("scene.toml", "11-15", "particles.dust.file.outside=\"hide\"");
+    EXPECT_EQ(hidden.exit_code, 0) << hidden.err;
+    EXPECT_FALSE(contains(hidden.err, "warning")) << hidden.err;
 }
 
 TEST(FileCommands, MotionBlurWithoutVelocitiesIsSaid)

@@ -1,90 +1,15 @@
-// Laws of rasterisation. All OpenVDB-touching particle tests of rasterize() live here.
+// What the grids hold: mass, the sum over particles, means of attributes, blur.
 #include <gtest/gtest.h>
 
 #include <openvdb/openvdb.h>
 
-#include "core/error.h"
-#include "core/parallel.h"
 #include "core/rng.h"
+#include "particles/clouds.h"
 #include "particles/kernel.h"
 #include "particles/rasterize.h"
-#include "particles/rasterize_plan.h"
 
 namespace mote {
 namespace {
-
-ParticleSet one_particle(Vec3 position, float radius, float mass = 1.0f)
-{
-    ParticleSet set;
-    set.position = {position};
-    set.radius = {radius};
-    set.mass = {mass};
-    return set;
-}
-
-/// `count` particles in a cube of `edge` metres around the origin, radii in [r0, r1].
-ParticleSet random_cloud(size_t count, float edge, float r0, float r1, uint32_t seed)
-{
-    ParticleSet set;
-    for (uint32_t i = 0; i < count; ++i) {
-        Rng rng(seed, 0, Stream::Test, i, 0);
-        set.position.push_back((rng.uniform3() - Vec3(0.5f)) * edge);
-        set.velocity.push_back((rng.uniform3() - Vec3(0.5f)) * 4.0f);
-        set.radius.push_back(r0 + (r1 - r0) * rng.uniform());
-        set.mass.push_back(0.5f + rng.uniform());
-        set.temperature.push_back(300.0f + 100.0f * rng.uniform());
-        set.color.push_back(rng.uniform3());
-    }
-    return set;
-}
-
-RasterizeParams voxels_of(float size)
-{
-    RasterizeParams params;
-    params.voxel_size = size;
-    return params;
-}
-
-/// Sum of density times voxel volume [kg].
-double mass_in(const openvdb::FloatGrid& grid)
-{
-    double sum = 0.0;
-    for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf) {
-        for (auto v = leaf->cbeginValueOn(); v; ++v) sum += static_cast<double>(*v);
-    }
-    return sum * std::pow(grid.voxelSize()[0], 3.0);
-}
-
-double total_mass(const ParticleSet& set)
-{
-    double sum = 0.0;
-    for (const float m : set.mass) sum += static_cast<double>(m);
-    return sum;
-}
-
-/// Centre of mass [m].
-Vec3d centroid(const openvdb::FloatGrid& grid)
-{
-    Vec3d sum(0.0);
-    double mass = 0.0;
-    for (auto v = grid.cbeginValueOn(); v; ++v) {
-        const openvdb::Vec3d p = grid.indexToWorld(v.getCoord());
-        sum += static_cast<double>(*v) * Vec3d(p[0], p[1], p[2]);
-        mass += static_cast<double>(*v);
-    }
-    return sum / mass;
-}
-
-template <class Grid>
-bool same_bits(const Grid& a, const Grid& b)
-{
-    if (a.activeVoxelCount() != b.activeVoxelCount()) return false;
-    auto other = b.getConstAccessor();
-    for (auto v = a.cbeginValueOn(); v; ++v) {
-        if (!other.isValueOn(v.getCoord()) || other.getValue(v.getCoord()) != *v) return false;
-    }
-    return true;
-}
 
 TEST(Rasterize, ConservesMassForEveryRadiusAndPlace)
 {
@@ -217,24 +142,6 @@ TEST(Rasterize, OpticalDepthDoesNotDependOnVoxelSize)
     EXPECT_NEAR(fine, total_mass(set) / 4.0, 0.02 * fine);
 }
 
-TEST(Rasterize, IsBitIdenticalForAnyThreadCount)
-{
-    const ParticleSet set = random_cloud(60'000, 4.0f, 0.0f, 0.15f, 5);
-    RasterizeParams params = voxels_of(0.03f);
-    params.channels = {true, true, true};
-    params.shutter_close_s = 0.02f;
-    std::vector<ParticleGrids> runs;
-    for (const int threads : {1, 2, 3, 8}) {
-        run_with_threads(threads, [&] { runs.push_back(rasterize(set, params)); });
-    }
-    for (const ParticleGrids& run : runs) {
-        EXPECT_TRUE(same_bits(*run.density, *runs[0].density));
-        EXPECT_TRUE(same_bits(*run.velocity, *runs[0].velocity));
-        EXPECT_TRUE(same_bits(*run.temperature, *runs[0].temperature));
-        EXPECT_TRUE(same_bits(*run.color, *runs[0].color));
-    }
-}
-
 TEST(Rasterize, ChannelsAreMassWeightedMeans)
 {
     // Constants come back unchanged, but for float rounding of two sums.
@@ -277,6 +184,19 @@ TEST(Rasterize, BuildsOnlyWhatIsAskedFor)
     EXPECT_NEAR(grids.density->indexToWorld(openvdb::Coord(10, 0, 0))[0], 1.0, 1e-6);
 }
 
+/// Centre of mass [m].
+Vec3d centroid(const openvdb::FloatGrid& grid)
+{
+    Vec3d sum(0.0);
+    double mass = 0.0;
+    for (auto v = grid.cbeginValueOn(); v; ++v) {
+        const openvdb::Vec3d p = grid.indexToWorld(v.getCoord());
+        sum += static_cast<double>(*v) * Vec3d(p[0], p[1], p[2]);
+        mass += static_cast<double>(*v);
+    }
+    return sum / mass;
+}
+
 TEST(Rasterize, MotionBlurKeepsMassAndCentroid)
 {
     ParticleSet set = one_particle({0.3f, 0.1f, -0.2f}, 0.1f, 2.0f);
@@ -296,106 +216,6 @@ TEST(Rasterize, MotionBlurKeepsMassAndCentroid)
     params.shutter_open_s = params.shutter_close_s;  // an empty shutter: nothing moves
     const Vec3d still = centroid(*rasterize(set, params).density);
     EXPECT_LT(glm::length(still - Vec3d(0.3, 0.1, -0.2)), 0.05 * 0.05);
-}
-
-TEST(Rasterize, ManyCoincidentParticlesAddUp)
-{
-    // Half a million equal numbers: a plain float sum would drift by percents.
-    ParticleSet set;
-    set.position.assign(500'000, Vec3(0.797f));  // touches eight leaves
-    set.mass.assign(set.size(), 0.1f);
-    const ParticleGrids grids = rasterize(set, voxels_of(0.1f));
-    EXPECT_NEAR(mass_in(*grids.density) / 50'000.0, 1.0, 1e-5);
-}
-
-TEST(Rasterize, EmptyAndMasslessInputGivesAnEmptyGrid)
-{
-    EXPECT_TRUE(rasterize({}, {}).density->empty());
-    EXPECT_TRUE(rasterize(one_particle(Vec3(0.0f), 1.0f, 0.0f), {}).density->empty());
-}
-
-TEST(Rasterize, FadedParticlesAreNoFaultButBadValuesAre)
-{
-    // The log warns of what plan.invalid counts: here a negative and an endless mass, not the 0.
-    ParticleSet set = random_cloud(8, 1.0f, 0.1f, 0.2f, 2);
-    set.mass[0] = 0.0f;
-    EXPECT_EQ(make_raster_plan(set, voxels_of(0.1f)).invalid, 0u);
-    set.mass[1] = -1.0f;
-    set.mass[2] = infinity;
-    EXPECT_EQ(make_raster_plan(set, voxels_of(0.1f)).invalid, 2u);
-    const ParticleGrids grids = rasterize(set, voxels_of(0.1f));
-    double kept = 0.0;
-    for (size_t i = 3; i < 8; ++i) kept += static_cast<double>(set.mass[i]);
-    EXPECT_NEAR(mass_in(*grids.density), kept, 1e-5 * kept);
-}
-
-TEST(Rasterize, NonFiniteValuesNeverReachTheGrid)
-{
-    const float nan = std::numeric_limits<float>::quiet_NaN();
-    ParticleSet set = random_cloud(8, 1.0f, 0.1f, 0.2f, 2);
-    set.position[0].y = nan;
-    set.mass[1] = infinity;
-    set.radius[2] = nan;
-    set.temperature[3] = nan;
-    set.velocity[4].z = infinity;
-    RasterizeParams params = voxels_of(0.1f);
-    params.channels = {true, true, false};
-    const ParticleGrids grids = rasterize(set, params);
-    double kept = 0.0;
-    for (size_t i = 5; i < 8; ++i) kept += static_cast<double>(set.mass[i]);
-    EXPECT_NEAR(mass_in(*grids.density), kept, 1e-5 * kept);
-    for (auto v = grids.velocity->cbeginValueOn(); v; ++v) ASSERT_TRUE(v->isFinite());
-    for (auto t = grids.temperature->cbeginValueOn(); t; ++t) ASSERT_TRUE(std::isfinite(*t));
-}
-
-TEST(Rasterize, HugeEmptyDomainsCostNothing)
-{
-    // Two clusters 100,000 voxels apart, and one at the far end of float's whole numbers.
-    ParticleSet set = random_cloud(2000, 1.0f, 0.1f, 0.2f, 8);
-    for (size_t i = 0; i < 1000; ++i) set.position[i] += Vec3(1e4f, -1e4f, 1e4f);
-    set.position[0] = Vec3(1.6e6f, 0.0f, 0.0f);
-    const ParticleGrids grids = rasterize(set, voxels_of(0.1f));
-    EXPECT_NEAR(mass_in(*grids.density) / total_mass(set), 1.0, 1e-5);
-    EXPECT_LT(grids.density->tree().leafCount(), 200u);
-}
-
-/// Message of the error that rasterize() throws; "" if it does not.
-std::string error_of(const ParticleSet& set, const RasterizeParams& params, ExitCode code)
-{
-    try {
-        (void)rasterize(set, params);
-    } catch (const Error& e) {
-        EXPECT_EQ(e.code(), code);
-        return e.what();
-    }
-    return "";
-}
-
-TEST(Rasterize, BudgetIsCheckedAndTheMessageNamesTheRemedy)
-{
-    const ParticleSet set = random_cloud(1000, 1.0f, 0.1f, 0.1f, 1);
-    RasterizeParams params = voxels_of(0.01f);
-    params.max_voxels = 100'000;
-    const std::string message = error_of(set, params, ExitCode::Memory);
-    EXPECT_NE(message.find("raise voxel_size"), std::string::npos) << message;
-    EXPECT_NE(message.find("radius"), std::string::npos) << message;
-
-    const std::string wide =
-        error_of(one_particle(Vec3(0.0f), 100.0f), voxels_of(0.01f), ExitCode::Memory);
-    EXPECT_NE(wide.find("particle 0: radius 100 m is 10000 voxels"), std::string::npos) << wide;
-}
-
-TEST(Rasterize, BadInputIsAnError)
-{
-    const std::string far =
-        error_of(one_particle(Vec3(3e8f), 0.1f), voxels_of(0.1f), ExitCode::Input);
-    EXPECT_NE(far.find("32-bit"), std::string::npos) << far;
-    EXPECT_NE(error_of({}, voxels_of(0.0f), ExitCode::Input), "");
-    EXPECT_NE(error_of({}, voxels_of(-infinity), ExitCode::Input), "");
-    EXPECT_NE(error_of({}, voxels_of(1e-20f), ExitCode::Input), "");
-    ParticleSet torn = one_particle(Vec3(0.0f), 1.0f);
-    torn.mass = {1.0f, 2.0f};
-    EXPECT_NE(error_of(torn, {}, ExitCode::Input), "");
 }
 
 }  // namespace

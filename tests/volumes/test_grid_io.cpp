@@ -126,63 +126,75 @@ std::string mutate(std::string bytes, uint32_t i)
     return bytes;
 }
 
-TEST(GridIoFuzz, DamagedFilesGiveOneErrorOrUsableBricks)
+/// Reads damaged copies of a file of a scalar and a vector grid, written with this compression,
+/// the scalars as half floats or not. More than `least_errors` of them must be refused.
+void read_damaged_files(uint32_t compression, bool as_half, double least_errors)
 {
     const TemporaryFolder folder;
-    const uint32_t per_file = std::getenv("MOTE_LONG_TESTS") ? 400 : 55;
-    GridBudget budget;
-    budget.max_voxels = 50'000'000;
-    budget.max_brick_bytes = 500'000'000;
-    int errors = 0;
-    int accepted = 0;
-    const uint32_t encodings[] = {openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK,
-                                  openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK,
-                                  openvdb::io::COMPRESS_NONE};
-    for (uint32_t kind = 0; kind < 3; ++kind) {
+    const std::string whole = folder.file("whole.vdb");
+    {
         ProceduralParams params;
         params.voxel_size = 0.04f;
         auto density = make_procedural(params, 0.0);
-        density->setSaveFloatAsHalf(kind == 1);
-        const std::string whole = folder.file("whole.vdb");
-        {
-            openvdb::io::File file(whole);
-            file.setCompression(encodings[kind]);
-            file.write({density, velocity_grid()});
-        }
-        const std::string bytes = read_bytes(whole);
-        ASSERT_GT(bytes.size(), 8000u);
-        for (uint32_t i = 0; i < per_file; ++i) {
-            const std::string path = folder.file("m" + std::to_string(kind * 1000 + i) + ".vdb");
-            std::ofstream(path, std::ios::binary) << mutate(bytes, kind * per_file + i);
-            try {
-                static_cast<void>(list_grids(path, budget));
-                GridLoadReport report;
-                const auto bricks =
-                    make_bricks(*read_float_grid(path, "density", budget), budget, report);
-                for (const BrickRange& range : bricks->ranges) {
-                    ASSERT_GE(range.min, 0.0f);
-                    ASSERT_LT(range.max, infinity);
-                }
-                static_cast<void>(
-                    make_color_bricks(*read_vec3_grid(path, "velocity", budget), budget, report));
-                ++accepted;
-            } catch (const Error& e) {
-                EXPECT_TRUE(e.code() == ExitCode::Input || e.code() == ExitCode::Memory);
-                ++errors;
-            }
-            fs::remove(path);
-        }
+        density->setSaveFloatAsHalf(as_half);
+        openvdb::io::File file(whole);
+        file.setCompression(compression);
+        file.write({density, velocity_grid()});
     }
-    EXPECT_EQ(errors + accepted, static_cast<int>(3 * per_file));
-    EXPECT_GT(errors, accepted / 2);
+    const std::string bytes = read_bytes(whole);
+    ASSERT_GT(bytes.size(), 8000u);
+    GridBudget budget;
+    budget.max_voxels = 50'000'000;
+    budget.max_brick_bytes = 500'000'000;
+    const uint32_t count = std::getenv("MOTE_LONG_TESTS") ? 400 : 55;
+    uint32_t errors = 0;
+    uint32_t accepted = 0;
+    for (uint32_t i = 0; i < count; ++i) {
+        const std::string path = folder.file("m" + std::to_string(i) + ".vdb");
+        write_bytes(path, mutate(bytes, 1000 * compression + i));
+        try {
+            static_cast<void>(list_grids(path, budget));
+            GridLoadReport report;
+            const auto bricks =
+                make_bricks(*read_float_grid(path, "density", budget), budget, report);
+            for (const BrickRange& range : bricks->ranges) {
+                ASSERT_GE(range.min, 0.0f);
+                ASSERT_LT(range.max, infinity);
+            }
+            static_cast<void>(
+                make_color_bricks(*read_vec3_grid(path, "velocity", budget), budget, report));
+            ++accepted;
+        } catch (const Error& e) {
+            EXPECT_TRUE(e.code() == ExitCode::Input || e.code() == ExitCode::Memory);
+            ++errors;
+        }
+        fs::remove(path);
+    }
+    EXPECT_EQ(errors + accepted, count);
+    EXPECT_GT(errors, least_errors * count);
     rusage usage{};
     getrusage(RUSAGE_CHILDREN, &usage);
-    RecordProperty("child_peak_kilobytes", static_cast<int>(usage.ru_maxrss));
     EXPECT_LT(usage.ru_maxrss, 2'500'000) << "a child needed more than 2.5 GB";
     getrusage(RUSAGE_SELF, &usage);
-    RecordProperty("peak_kilobytes", static_cast<int>(usage.ru_maxrss));
     EXPECT_LT(usage.ru_maxrss, 2'500'000) << "the reader needed more than 2.5 GB";
-    std::printf("%d errors, %d accepted, peak %ld MB\n", errors, accepted, usage.ru_maxrss / 1000);
+    std::printf("%u errors, %u accepted, peak %ld MB\n", errors, accepted, usage.ru_maxrss / 1000);
+}
+
+TEST(GridIoFuzz, DamagedBloscFilesGiveOneErrorOrUsableBricks)
+{
+    read_damaged_files(openvdb::io::COMPRESS_BLOSC | openvdb::io::COMPRESS_ACTIVE_MASK, false,
+                       0.33);
+}
+
+TEST(GridIoFuzz, DamagedZipFilesOfHalfFloatsGiveOneErrorOrUsableBricks)
+{
+    read_damaged_files(openvdb::io::COMPRESS_ZIP | openvdb::io::COMPRESS_ACTIVE_MASK, true, 0.33);
+}
+
+TEST(GridIoFuzz, DamagedPlainFilesGiveOneErrorOrUsableBricks)
+{
+    // Only the quarter that is cut short shows; other damage is mostly of voxel values.
+    read_damaged_files(openvdb::io::COMPRESS_NONE, false, 0.2);
 }
 
 }  // namespace
