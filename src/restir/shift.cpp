@@ -76,7 +76,7 @@ std::optional<ShiftedSample> shift(ShiftKind kind, const PathSample& y, const Sh
     if (!has_equal_measure(from.frame, to.frame, y.light)) return std::nullopt;
     switch (kind) {
         case ShiftKind::RandomNumbers:
-            if (!(to.domain.Z() > 0.0f)) return std::nullopt;
+            if (!(from.domain.Z() > 0.0f) || !(to.domain.Z() > 0.0f)) return std::nullopt;
             return ShiftedSample{y, 1.0f};
         case ShiftKind::World:
             return shift_world(y, from, to, map);
