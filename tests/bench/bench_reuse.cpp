@@ -1,6 +1,6 @@
 // What reuse is worth: relative variance and CPU time of one shown frame after eight others, for
 // every mode, shift and strength of validation, at rest and in motion.
-//   bench_reuse [runs = 12]
+//   bench_reuse [runs = 12] [still | camera | smoke]
 // Efficiency is 1 / (variance * CPU time) over that without reuse, in the same scene and run. Light
 // caches are shared and not counted.
 
@@ -136,13 +136,20 @@ spread = [4, 4, 4]
 radius = 0.05
 strength = 3
 )";
-    for (const auto& [name, lamps] :
-         {std::pair("inside", nine_lamps), std::pair("around", lamps_around)}) {
-        const std::string where = name;
-        report(where + " still", frames_of_bench(still_camera, "", "", lamps), false, runs);
-        report(where + " camera", frames_of_bench(slow_camera, "", "", lamps), true, runs);
-        report(where + " smoke",
-               frames_of_bench(still_camera, ", evolve = 1.5", slow_flight, lamps), true, runs);
+    const std::string wanted = argc > 2 ? argv[2] : "";
+    for (const bool inside : {true, false}) {
+        const char* const lamps = inside ? nine_lamps : lamps_around;
+        const char* const where = inside ? "inside" : "around";
+        const auto play = [&](const char* motion, const char* camera, const char* evolve,
+                              const char* transform) {
+            if (!wanted.empty() && wanted != motion) return;
+            report(fmt::format("{} {}", where, motion),
+                   frames_of_bench(camera, evolve, transform, lamps),
+                   std::string(motion) != "still", runs);
+        };
+        play("still", still_camera, "", "");
+        play("camera", slow_camera, "", "");
+        play("smoke", still_camera, ", evolve = 1.5", slow_flight);
     }
     return 0;
 }

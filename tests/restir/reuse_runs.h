@@ -59,6 +59,7 @@ using FrameCaches = std::vector<std::shared_ptr<const LightCaches>>;
 struct RunCount {
     int runs = 32;
     uint32_t first_seed = 1;
+    int samples = 1;  ///< per pixel and frame, of the tested renderer
 };
 
 /// a - b, pixel by pixel.
@@ -81,7 +82,7 @@ struct ReuseRuns {
 };
 
 /// Plays the frames from an empty history, once per seed, and collects the last frame of each run.
-/// `restir` says how; one sample per pixel and frame.
+/// `restir` says how.
 [[nodiscard]] inline ReuseRuns play_runs(std::span<const Scene> frames, const FrameCaches& caches,
                                          const RestirParams& restir, const RunCount& count)
 {
@@ -89,7 +90,7 @@ struct ReuseRuns {
     RenderDescription render;
     render.width = frames.front().camera.width;
     render.height = frames.front().camera.height;
-    render.samples = 1;
+    render.samples = count.samples;
     render.estimator = EstimatorKind::Restir;
     const OutputDescription output = direct_light_output();
     FrameStats stats;

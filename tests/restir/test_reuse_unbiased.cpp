@@ -25,6 +25,7 @@ struct Effort {
     int runs = 40;
     int reference_runs = 32;
     int reference_samples = 100;
+    int samples = 1;
     double alpha = 1e-5;  ///< false-alarm rate of one comparison
 };
 
@@ -43,7 +44,8 @@ void expect_unbiased(const SceneCase& scene, const std::vector<ReuseCase>& cases
         RestirParams params = each.params;
         params.control_variate = scene.control_variate;
         const double before = process_cpu_seconds();
-        const test::ReuseRuns tested = test::play_runs(frames, caches, params, {effort.runs, 1});
+        const test::ReuseRuns tested =
+            test::play_runs(frames, caches, params, {effort.runs, 1, effort.samples});
         const RunComparison comparison = compare_runs(tested.images, reference);
         const test::Bias bias = test::bias_of(comparison);
         const test::AddedBias added = test::test_added(tested.added, reference);
@@ -90,7 +92,19 @@ class ReuseScenesLong : public testing::TestWithParam<SceneCase> {};
 TEST_P(ReuseScenesLong, HasTheMeanOfThePathTracer)
 {
     if (!test::runs_long_tests()) GTEST_SKIP() << "MOTE_LONG_TESTS=1 runs it";
-    expect_unbiased(GetParam(), test::all_reuse_cases(), {4, 600, 32, 2000, 1e-5});
+    expect_unbiased(GetParam(), test::all_reuse_cases(), {4, 600, 32, 2000});
+}
+
+/// Passes of one frame reuse each other on rays of their own.
+TEST(ReuseStat, SeveralPassesOfAFrameKeepTheMean)
+{
+    expect_unbiased({"passes", test::still_frames}, test::all_reuse_cases(), {1, 20, 32, 100, 6});
+}
+
+TEST(ReuseLong, SeveralPassesOfAFrameKeepTheMean)
+{
+    if (!test::runs_long_tests()) GTEST_SKIP() << "MOTE_LONG_TESTS=1 runs it";
+    expect_unbiased({"passes", test::still_frames}, test::all_reuse_cases(), {1, 500, 32, 2000, 8});
 }
 
 /// Histories long enough to be at their most correlated.
@@ -99,7 +113,7 @@ TEST(ReuseLong, LongHistoriesKeepTheMean)
     if (!test::runs_long_tests()) GTEST_SKIP() << "MOTE_LONG_TESTS=1 runs it";
     for (const SceneCase& scene : {SceneCase{"still, 40th", test::still_frames},
                                    SceneCase{"smoke, 40th", test::evolving_smoke_frames}}) {
-        expect_unbiased(scene, test::all_reuse_cases(), {40, 200, 32, 1000, 1e-5});
+        expect_unbiased(scene, test::all_reuse_cases(), {40, 200, 32, 1000});
     }
 }
 
