@@ -112,17 +112,22 @@ Rng pass_rng(const PassInputs& inputs, const PassKey& key, Stream stream)
             pixel_index(scene.camera, key), key.pass};
 }
 
-void begin_pass(const PassInputs& inputs, const PassKey& key, int owner, PixelDomain& domain,
-                LightRays& rays, FilmSample& sample, PassCounts& counts)
+Ray camera_ray(const PassInputs& inputs, const PassKey& key)
+{
+    const PassSequence numbers = pass_numbers(inputs, key);
+    const Camera& camera = inputs.domain.scene->camera;
+    const Vec2 film = Vec2(key.x, key.y) + pair(numbers, NumberPair::Film);
+    const Vec2 lens = camera.lens_radius > 0.0f ? pair(numbers, NumberPair::Lens) : Vec2(0.5f);
+    const bool moves = inputs.domain.has_motion;
+    return generate_ray(camera, film, lens, moves ? pair(numbers, NumberPair::Time).x : 0.0f);
+}
+
+void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray, int owner,
+                PixelDomain& domain, LightRays& rays, FilmSample& sample, PassCounts& counts)
 {
     const FrameDomain& frame = inputs.domain;
     const Scene& scene = *frame.scene;
     const PassSequence numbers = pass_numbers(inputs, key);
-    const Vec2 film = Vec2(key.x, key.y) + pair(numbers, NumberPair::Film);
-    const Camera& camera = scene.camera;
-    const Vec2 lens = camera.lens_radius > 0.0f ? pair(numbers, NumberPair::Lens) : Vec2(0.5f);
-    const float time = frame.has_motion ? pair(numbers, NumberPair::Time).x : 0.0f;
-    const Ray ray = generate_ray(camera, film, lens, time);
     make_pixel_domain(frame, ray, domain, counts.bins);
 
     const float depth = domain.bins.depth();

@@ -40,12 +40,15 @@ struct PassCounts {
     void add(const PassCounts& other);
 };
 
-/// Draws the pixel's camera ray, tabulates the media along it and fills all parts of the sample
-/// that need no reservoir: background and alpha in closed form, emission by one point per brick
+/// The pixel's camera ray in a pass: place on the film, on the lens and in time.
+[[nodiscard]] Ray camera_ray(const PassInputs& inputs, const PassKey& key);
+
+/// Tabulates the media along the pixel's camera ray and fills all parts of the sample that need no
+/// reservoir: background and alpha in closed form, emission by one point per brick
 /// with exact transmittance, lights at infinity by control variate (corrections go to `rays` under
 /// `owner`), two and more events by the path tracer. Pixels without smoke cost a bounds test.
-void begin_pass(const PassInputs& inputs, const PassKey& key, int owner, PixelDomain& domain,
-                LightRays& rays, FilmSample& sample, PassCounts& counts);
+void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray, int owner,
+                PixelDomain& domain, LightRays& rays, FilmSample& sample, PassCounts& counts);
 
 /// The random numbers of one purpose in a pixel's pass.
 [[nodiscard]] Rng pass_rng(const PassInputs& inputs, const PassKey& key, Stream stream);

@@ -31,7 +31,8 @@ void trace_tile_pass(const PassInputs& inputs, const Tile& tile, uint32_t pass,
             const PassKey key{x, y, pass};
             FilmSample& sample = scratch.samples[static_cast<size_t>(owner)];
             sample = {};
-            begin_pass(inputs, key, owner, scratch.domain, scratch.rays, sample, counts);
+            begin_pass(inputs, key, camera_ray(inputs, key), owner, scratch.domain, scratch.rays,
+                       sample, counts);
             const bool lit = frame.has_sampled_lights() && !scratch.domain.bins.empty() &&
                              inputs.render.path.max_bounces > 0;
             if (!lit) continue;

@@ -59,7 +59,9 @@ struct ReusingFrame {
             counts.add(own);
         });
     }
-    void fill_initial(const Tile& tile, uint32_t pass, DomainStore& domains, PassCounts& n);
+    /// `kept`: where rays are taken from; null: drawn.
+    void fill_initial(const Tile& tile, uint32_t pass, const DomainStore* kept,
+                      DomainStore& domains, PassCounts& n);
 };
 
 /// Candidates of one pixel in a tile's list.
@@ -68,8 +70,8 @@ struct CandidateRange {
     size_t count = 0;
 };
 
-void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, DomainStore& domains,
-                                PassCounts& n)
+void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, const DomainStore* kept,
+                                DomainStore& domains, PassCounts& n)
 {
     const FrameDomain& frame = inputs.domain;
     LightRays corrections;
@@ -85,7 +87,8 @@ void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, DomainStore& do
             sample = {};
             const auto owner = static_cast<int>(samples.size());
             samples.push_back(&sample);
-            begin_pass(inputs, key, owner, domain, corrections, sample, n);
+            const Ray ray = kept ? kept->ray(x, y) : camera_ray(inputs, key);
+            begin_pass(inputs, key, ray, owner, domain, corrections, sample, n);
             const size_t first = candidates.size();
             if (!domain.bins.empty() && inputs.render.path.max_bounces > 0) {
                 weigh_bins(frame, domain);
@@ -164,10 +167,17 @@ bool render_reusing_passes(const PassInputs& inputs, const ReusePlan& plan,
     const bool matches =
         !before.empty() && before.domains.width() == width && before.domains.height() == height;
     if (!matches) before = {};
+    // Where nothing changed a pixel keeps its camera ray: history then fits exactly. On another ray
+    // through the pixel it is worth less than nothing (measured: ten times the noise). Several
+    // passes of one frame need rays of their own to cover the pixel.
+    const bool keeps_rays = plan.temporal && inputs.render.samples == 1 && !before.empty() &&
+                            !change_between(before.frame, frame).any();
     for (uint32_t pass = 0; pass < static_cast<uint32_t>(inputs.render.samples); ++pass) {
         FinishedPass now{frame, DomainStore(width, height), Buffer2D<Reservoir>(width, height)};
-        run.for_tiles(
-            [&](const Tile& tile, PassCounts& n) { run.fill_initial(tile, pass, now.domains, n); });
+        const DomainStore* kept = keeps_rays ? &before.domains : nullptr;
+        run.for_tiles([&](const Tile& tile, PassCounts& n) {
+            run.fill_initial(tile, pass, kept, now.domains, n);
+        });
         const ReuseOutput out{buffers.next, buffers.colors};
         if (plan.temporal && !before.empty()) {
             const bool still = !change_between(before.frame, frame).any();

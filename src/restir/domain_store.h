@@ -21,6 +21,8 @@ class DomainStore {
     /// Unpacks a pixel's domain.
     void load(int x, int y, PixelDomain& domain) const;
 
+    [[nodiscard]] const Ray& ray(int x, int y) const { return headers_.at(x, y).ray; }
+
     /// Optical depth of the pixel's whole ray, without unpacking it.
     [[nodiscard]] float depth(int x, int y) const { return headers_.at(x, y).depth; }
 

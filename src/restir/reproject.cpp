@@ -102,6 +102,8 @@ Change change_between(const FrameDomain& before, const FrameDomain& now)
     Change change;
     change.camera = !is_same(a.camera.world_from_camera, b.camera.world_from_camera) ||
                     a.camera.tan_half_fov_y != b.camera.tan_half_fov_y ||
+                    a.camera.lens_radius != b.camera.lens_radius ||
+                    a.camera.focus_distance != b.camera.focus_distance ||
                     a.camera.width != b.camera.width || a.camera.height != b.camera.height;
     change.media = !(before.caches->media == now.caches->media);
     change.lights = !std::equal(a.lights.begin(), a.lights.end(), b.lights.begin(), b.lights.end(),

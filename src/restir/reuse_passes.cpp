@@ -70,7 +70,9 @@ void reuse_in_time(const PassView& pass, const FinishedPass& before, bool still,
             scratch.begin_pixel(pass.reservoirs.at(x, y));
             pass.domains.load(x, y, own);
             if (!(own.Z() > 0.0f)) continue;
-            const auto from = previous_pixel(before.frame, pass.frame, own, !still);
+            const std::optional<PreviousPixel> from =
+                still ? PreviousPixel{x, y, Vec3(0.0f)}
+                      : previous_pixel(before.frame, pass.frame, own, true);
             if (!from) continue;
             before.domains.load(from->x, from->y, earlier);
             const RayMap map = make_ray_map(earlier.ray, own.ray, from->motion);

@@ -6,6 +6,16 @@
 namespace mote {
 namespace {
 
+/// Whether the light's part of a sample means the same kind of thing in both frames. Where lights
+/// come and go their numbers move, and a lamp's random numbers are no direction to the sky: then
+/// neither frame could have made the other's sample.
+bool has_equal_measure(const FrameDomain& from, const FrameDomain& to, int light)
+{
+    const auto i = static_cast<size_t>(light);
+    return light >= 0 && i < from.lights.size() && i < to.lights.size() &&
+           from.lights[i].kind == to.lights[i].kind;
+}
+
 float collided_share(const RayBins& bins)
 {
     return -std::expm1(-bins.depth());
@@ -63,9 +73,10 @@ RayMap make_ray_map(const Ray& from, const Ray& to, Vec3 motion)
 std::optional<ShiftedSample> shift(ShiftKind kind, const PathSample& y, const ShiftEnd& from,
                                    const ShiftEnd& to, const RayMap& map)
 {
+    if (!has_equal_measure(from.frame, to.frame, y.light)) return std::nullopt;
     switch (kind) {
         case ShiftKind::RandomNumbers:
-            if (!(to.domain.Z() > 0.0f)) return std::nullopt;
+            if (!(from.domain.Z() > 0.0f) || !(to.domain.Z() > 0.0f)) return std::nullopt;
             return ShiftedSample{y, 1.0f};
         case ShiftKind::World:
             return shift_world(y, from, to, map);

@@ -43,7 +43,8 @@ struct ShiftEnd {
 ///                  (sigma_t T / w), with w the weight of RayPoint.
 ///   Fraction       F(s') = F(s), F the share of collisions before s: J = (w / w') (L' / L), L the
 ///                  ray's share of light that collides.
-/// Empty where the map is not defined: no medium on either side. Shifting back by the inverse map
+/// Empty where the map is not defined: no medium on either side, or a light that is of another kind
+/// in the other frame. Shifting back by the inverse map
 /// gives the sample again, up to rounding.
 [[nodiscard]] std::optional<ShiftedSample> shift(ShiftKind kind, const PathSample& y,
                                                  const ShiftEnd& from, const ShiftEnd& to,
