@@ -1,8 +1,8 @@
 #include "volumes/ray_bins.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <vector>
 
 #include "volumes/collisions.h"
 
@@ -129,18 +129,50 @@ float depth_between(const Volume& volume, const LocalRay& local, float s0, float
     return sum * volume.density_scale;
 }
 
-/// The same through all media, distances counted from bins.t0.
-float depth_between(const Media& media, const Ray& ray, const RayBins& bins, float s0, float s1)
-{
-    float sum = 0.0f;
-    for (const Volume& volume : media.volumes) {
-        if (is_void(volume)) continue;
-        const LocalRay local = density_ray(volume, ray, {bins.world_t(s0), bins.world_t(s1)});
-        if (local.misses()) continue;
-        sum += depth_between(volume, local, 0.0f, local.s1);
+/// A stretch of a binned ray in the grids of all media that it meets, for any number of depths
+/// along it. Distances count from bins.t0.
+class MediaStretch {
+  public:
+    MediaStretch(const Media& media, const Ray& ray, const RayBins& bins, float s0, float s1)
+    {
+        parts_.reserve(media.volumes.size());
+        for (const Volume& volume : media.volumes) {
+            if (is_void(volume)) continue;
+            const LocalRay local = density_ray(volume, ray, {bins.world_t(s0), bins.world_t(s1)});
+            if (local.misses()) continue;
+            parts_.push_back({&volume, local, static_cast<float>(local.t0 - bins.t0)});
+        }
     }
-    return sum;
-}
+
+    [[nodiscard]] float depth(float a, float b) const
+    {
+        float sum = 0.0f;
+        for (const Part& part : parts_) {
+            sum += depth_between(*part.volume, part.ray, a - part.start, b - part.start);
+        }
+        return sum;
+    }
+
+    [[nodiscard]] float sigma_t(float s) const
+    {
+        float sum = 0.0f;
+        for (const Part& part : parts_) {
+            const float own = s - part.start;
+            if (!(own >= 0.0f && own <= part.ray.s1)) continue;
+            sum +=
+                part.volume->density_scale * sample_local(*part.volume->density, part.ray.at(own));
+        }
+        return sum;
+    }
+
+  private:
+    struct Part {
+        const Volume* volume;
+        LocalRay ray;
+        float start;  ///< where the ray's own distances begin
+    };
+    std::vector<Part> parts_;
+};
 
 const Volume* single_volume(const Media& media)
 {
@@ -206,15 +238,37 @@ void bin_all(const Media& media, const Ray& ray, float cut, RayBins& bins, BinCo
     const size_t keep = std::min<size_t>(last, RayBins::capacity);
     bins.s[0] = 0.0f;
     bins.tau[0] = 0.0f;
+    const MediaStretch stretch(media, ray, bins, 0.0f, static_cast<float>(edges.back() - bins.t0));
     for (size_t i = 1; i <= keep; ++i) {
         const auto s = static_cast<float>(edges[i * last / keep] - bins.t0);
         const float before = bins.s[bins.count];
         if (!(s > before)) continue;
-        const float depth = depth_between(media, ray, bins, before, s);
+        const float depth = stretch.depth(before, s);
         ++bins.count;
         bins.s[bins.count] = s;
         bins.tau[bins.count] = bins.tau[bins.count - 1] + depth;
     }
+}
+
+/// Root of a monotone function by Newton's method, kept inside a bracket. Each step integrates only
+/// what lies between it and the one before.
+float invert_all(const MediaStretch& stretch, float s0, float s1, float whole, float tau)
+{
+    float lo = s0;
+    float hi = s1;
+    float s = s0 + (s1 - s0) * (tau / whole);
+    float depth = stretch.depth(s0, s);
+    for (int i = 0; i < 40; ++i) {
+        const float excess = depth - tau;
+        if (std::abs(excess) <= 2e-6f * whole) break;
+        (excess > 0.0f ? hi : lo) = s;
+        const float newton = s - excess / stretch.sigma_t(s);
+        const float next = newton > lo && newton < hi ? newton : 0.5f * (lo + hi);
+        if (next == s) break;
+        depth += next > s ? stretch.depth(s, next) : -stretch.depth(next, s);
+        s = next;
+    }
+    return s;
 }
 
 }  // namespace
@@ -239,23 +293,8 @@ float invert_bin(const Media& media, const Ray& ray, const RayBins& bins, int k,
     if (const Volume* volume = single_volume(media)) {
         return s0 + invert_single(*volume, single_ray(*volume, ray, bins, s0, s1), tau);
     }
-    // Root of a monotone function: false position kept inside a bracket, halved where it stalls.
-    float lo = s0;
-    float hi = s1;
-    float depth_lo = 0.0f;
-    float depth_hi = whole;
-    float s = s0 + (s1 - s0) * (tau / whole);
-    for (int i = 0; i < 40; ++i) {
-        const float depth = depth_between(media, ray, bins, s0, s);
-        if (std::abs(depth - tau) <= 1e-6f * whole) break;
-        (depth > tau ? hi : lo) = s;
-        (depth > tau ? depth_hi : depth_lo) = depth;
-        const float share = (tau - depth_lo) / std::max(depth_hi - depth_lo, 1e-30f);
-        const float next = i % 3 == 2 ? 0.5f * (lo + hi) : lo + (hi - lo) * share;
-        if (next == s) break;
-        s = next;
-    }
-    return std::clamp(s, s0, s1);
+    const MediaStretch stretch(media, ray, bins, s0, s1);
+    return std::clamp(invert_all(stretch, s0, s1, whole, tau), s0, s1);
 }
 
 int bin_of(const RayBins& bins, float s)
@@ -275,7 +314,7 @@ float depth_to(const Media& media, const Ray& ray, const RayBins& bins, float s)
         single_volume(media)
             ? depth_between(media.volumes.front(),
                             single_ray(media.volumes.front(), ray, bins, near, s), 0.0f, s - near)
-            : depth_between(media, ray, bins, near, s);
+            : MediaStretch(media, ray, bins, near, s).depth(near, s);
     return std::min(bins.tau[k] + within, bins.tau[k + 1]);
 }
 
