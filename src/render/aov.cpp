@@ -60,7 +60,8 @@ std::vector<AovInfo> make_table()
          "restir",
          {"restir.M", "restir.W", "restir.age"},
          true,
-         "The pixel's reservoir, mean over the passes: confidence M [passes], contribution weight W, "
+         "The pixel's reservoir, mean over the passes: confidence M [passes], contribution weight "
+         "W, "
          "passes since its sample was drawn; 0 without reuse and of the path estimator"},
         {Aov::Cost,
          "cost",

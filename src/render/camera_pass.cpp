@@ -159,9 +159,14 @@ void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray, in
     }
     ++counts.truncated;
     if (max_bounces > 1) {
-        const PathResult path = trace_path(scene, inputs.lights, inputs.render.path, ray, rng);
-        sample.indirect = path.indirect;
-        counts.truncated += path.truncated ? 0 : -1;
+        const int paths = frame.params.indirect_paths;
+        bool truncated = false;
+        for (int i = 0; i < paths; ++i) {
+            const PathResult path = trace_path(scene, inputs.lights, inputs.render.path, ray, rng);
+            sample.indirect += path.indirect / static_cast<float>(paths);
+            truncated |= path.truncated;
+        }
+        counts.truncated += truncated ? 0 : -1;
     }
 }
 

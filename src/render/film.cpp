@@ -7,8 +7,8 @@ namespace mote {
 bool FilmSample::is_finite() const
 {
     return mote::is_finite(L()) && std::isfinite(transmittance) && mote::is_finite(albedo) &&
-           std::isfinite(motion.x) && std::isfinite(motion.y) && !std::isnan(optical_depth) && mote::is_finite(reservoir) &&
-           (!collided || std::isfinite(depth));
+           std::isfinite(motion.x) && std::isfinite(motion.y) && !std::isnan(optical_depth) &&
+           mote::is_finite(reservoir) && (!collided || std::isfinite(depth));
 }
 
 Spectrum MeanSpectrum::mean(int64_t count) const

@@ -184,8 +184,7 @@ bool render_reusing_passes(const PassInputs& inputs, const ReusePlan& plan,
             run.for_tiles([&](const Tile& tile, PassCounts& n) {
                 Combination scratch(temporal_rules(frame.params, still));
                 reuse_in_time({frame, now.domains, buffers.current}, before, still, tile,
-                              run.rng(Stream::Temporal, pass), scratch, out, n.light_rays,
-                              n.reuse);
+                              run.rng(Stream::Temporal, pass), scratch, out, n.light_rays, n.reuse);
             });
             std::swap(buffers.current, buffers.next);
         }
@@ -199,8 +198,7 @@ bool render_reusing_passes(const PassInputs& inputs, const ReusePlan& plan,
             run.for_tiles([&](const Tile& tile, PassCounts& n) {
                 Combination scratch(spatial_rules(frame.params));
                 reuse_in_space({frame, now.domains, buffers.current}, tile,
-                               run.rng(Stream::Spatial, pass), scratch, out, n.light_rays,
-                              n.reuse);
+                               run.rng(Stream::Spatial, pass), scratch, out, n.light_rays, n.reuse);
             });
             std::swap(buffers.current, buffers.next);
         }

@@ -232,8 +232,8 @@ Spectrum scatter_infinite_lights(const FrameDomain& frame, const Ray& ray, const
     const Vec2 distance = numbers.pair(pairs.distances);
     const Vec2 direction = numbers.pair(pairs.directions);
     // One light, no image: nothing to choose.
-    const bool chooses = caches.distant.size() > 1 ||
-                         (frame.scene->environment && frame.scene->environment->map);
+    const bool chooses =
+        caches.distant.size() > 1 || (frame.scene->environment && frame.scene->environment->map);
     const Vec2 choice = chooses ? numbers.pair(pairs.choices) : Vec2(0.5f);
     // Several rays of one pass form a lattice, shifted by the pass's own numbers.
     const auto shifted = [](float u, float step) {

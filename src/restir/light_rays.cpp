@@ -29,11 +29,12 @@ void LightRays::trace(const Media& media, WalkCounts& counts)
 
 float depth_that_matters(Spectrum weight, float pixel_luminance)
 {
+    constexpr float shallowest = 18.0f;
     constexpr float deepest = 104.0f;  // a float's exp(-tau) is 0 beyond
     if (!(pixel_luminance > 0.0f)) return deepest;
     const float ratio = 1e7f * max_component(glm::abs(weight)) / pixel_luminance;
     if (!(ratio < 1e30f)) return deepest;
-    return std::clamp(std::log(std::max(ratio, 1.0f)), 4.0f, deepest);
+    return std::clamp(std::log(std::max(ratio, 1.0f)), shallowest, deepest);
 }
 
 }  // namespace mote

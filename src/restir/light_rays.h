@@ -26,8 +26,9 @@ struct LightRays {
 };
 
 /// Optical depth beyond which a contribution is below 1e-7 of the pixel: what it would bring
-/// without anything in the way, against what the pixel is known to have. Never below 4, and where
-/// the pixel is not known to have anything, as deep as floats go.
+/// without anything in the way, against what the pixel is thought to have. That may come from wrong
+/// caches, so it is never below 18 (1e-8 of the contribution itself); where the pixel is not
+/// thought to have anything, as deep as floats go.
 [[nodiscard]] float depth_that_matters(Spectrum weight, float pixel_luminance);
 
 }  // namespace mote

@@ -8,7 +8,7 @@ namespace {
 /// Confidence that history may have: long where nothing moves, short where targets change (caps of
 /// 20 in motion made noise worse than no reuse, in both prototypes).
 constexpr float still_cap = 16.0f;
-constexpr float moving_cap = 3.0f;
+constexpr float moving_cap = 1.0f;
 
 float cap_of(const TemporalParams& params, bool still)
 {

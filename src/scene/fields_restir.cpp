@@ -14,13 +14,14 @@ constexpr std::array preset_names = {"default", "textbook", "preview", "biased-n
 
 void describe(FieldVisitor& v, RestirParams& restir)
 {
-    visit_choice(v,
-                 {.key = "preset",
-                  .doc = "Sets the keys below, those given besides win: textbook is the papers' "
-                         "configuration, for comparison; preview leaves out exact corrections; "
-                         "biased-no-visibility reuses without shadow rays, biased-constant-mis with "
-                         "1/M weights"},
-                 restir.preset, preset_names);
+    visit_choice(
+        v,
+        {.key = "preset",
+         .doc = "Sets the keys below, those given besides win: textbook is the papers' "
+                "configuration, for comparison; preview leaves out exact corrections; "
+                "biased-no-visibility reuses without shadow rays, biased-constant-mis with "
+                "1/M weights"},
+        restir.preset, preset_names);
     if (v.assigns()) restir = make_restir_params(restir.preset);
     visit_choice(v,
                  {.key = "reuse",
@@ -49,6 +50,12 @@ void describe(FieldVisitor& v, RestirParams& restir)
            .doc = "Exact corrections per pixel and pass into the environment",
            .range = between(1, 64)},
           restir.environment_rays);
+    visit(
+        v,
+        {.key = "indirect_paths",
+         .doc = "Paths per pixel and pass for light scattered twice and more, if `bounces` allows",
+         .range = between(1, 256)},
+        restir.indirect_paths);
     visit(v,
           {.key = "corrections",
            .doc = "false: distant lights and the environment by closed form alone, without noise "
@@ -64,12 +71,13 @@ void describe(FieldVisitor& v, RestirParams& restir)
                   .doc = "Weights between reservoirs; constant is biased where smoke does not "
                          "overlap: for study"},
                  restir.mis, mis_names);
-    visit_choice(v,
-                 {.key = "visibility",
-                  .doc = "Shadows in the target function: exact rays; cached: what the light caches "
-                         "know, with an exact ray for the chosen sample; none: no shadow rays in "
-                         "reuse, biased"},
-                 restir.visibility, visibility_names);
+    visit_choice(
+        v,
+        {.key = "visibility",
+         .doc = "Shadows in the target function: exact rays; cached: what the light caches "
+                "know, with an exact ray for the chosen sample; none: no shadow rays in "
+                "reuse, biased"},
+        restir.visibility, visibility_names);
     visit_table(v, {.key = "temporal", .doc = "Reuse of the pass before"}, restir.temporal);
     visit_table(v, {.key = "spatial", .doc = "Reuse of neighbours"}, restir.spatial);
 }
@@ -78,7 +86,7 @@ void describe(FieldVisitor& v, TemporalParams& temporal)
 {
     visit(v,
           {.key = "cap",
-           .doc = "Most confidence that history may have; 0: 16 at rest, 3 in motion",
+           .doc = "Most confidence that history may have; 0: 16 at rest, 1 in motion",
            .unit = "passes",
            .range = between(0, 10'000)},
           temporal.cap);

