@@ -88,11 +88,21 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
     const ReusePlan plan = plan_reuse(domain, render, change);
     const PassInputs inputs{domain, render, aovs, lights};
     PassCounts counts;
-    const bool finished = plan.any() ? render_reusing_passes(inputs, plan, control, history.before,
-                                                             film, counts, stats.dropped_non_finite)
-                                     : render_independent_passes(inputs, control, film, counts,
-                                                                 stats.dropped_non_finite);
-    if (!plan.any()) history.before = {};
+    bool finished = false;
+    if (plan.reuses_samples()) {
+        finished = render_reusing_passes(inputs, plan, control, history.before, film, counts,
+                                         stats.dropped_non_finite);
+    } else {
+        history.before = {};
+        const Camera& camera = scene.camera;
+        if (!plan.accumulates) history.pixels = {};
+        if (plan.keeps_passes && !plan.accumulates) {
+            history.pixels = Buffer2D<PixelFilm>(camera.width, camera.height);
+        }
+        finished =
+            render_independent_passes(inputs, control, film, counts, stats.dropped_non_finite,
+                                      plan.keeps_passes ? &history.pixels : nullptr);
+    }
     history.last = may_reuse ? domain : FrameDomain{};
     stats.truncated_paths = counts.truncated;
     stats.camera_rays = counts.bins.rays;
@@ -107,7 +117,8 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
 }
 
 bool render_independent_passes(const PassInputs& inputs, const FrameControl& control, Film& film,
-                               PassCounts& counts, int64_t& dropped)
+                               PassCounts& counts, int64_t& dropped,
+                               Buffer2D<PixelFilm>* accumulated)
 {
     std::atomic<bool> stopped{false};
     std::mutex mutex;
@@ -117,6 +128,15 @@ bool render_independent_passes(const PassInputs& inputs, const FrameControl& con
         TileScratch scratch;
         scratch.samples.resize(pixels);
         scratch.pixels.resize(pixels);
+        const auto for_pixels = [&](auto&& f) {
+            size_t i = 0;
+            for (int y = tile.y0; y < tile.y1; ++y) {
+                for (int x = tile.x0; x < tile.x1; ++x) f(x, y, scratch.pixels[i++]);
+            }
+        };
+        if (accumulated) {
+            for_pixels([&](int x, int y, PixelFilm& p) { p = accumulated->at(x, y); });
+        }
         PassCounts tile_counts;
         int64_t tile_dropped = 0;
         for (int pass = 0; pass < inputs.render.samples; ++pass) {
@@ -127,9 +147,9 @@ bool render_independent_passes(const PassInputs& inputs, const FrameControl& con
                 tile_dropped += scratch.pixels[i].add(scratch.samples[i]) ? 0 : 1;
             }
         }
-        size_t i = 0;
-        for (int y = tile.y0; y < tile.y1; ++y) {
-            for (int x = tile.x0; x < tile.x1; ++x) film.store(x, y, scratch.pixels[i++]);
+        for_pixels([&](int x, int y, const PixelFilm& p) { film.store(x, y, p); });
+        if (accumulated) {
+            for_pixels([&](int x, int y, const PixelFilm& p) { accumulated->at(x, y) = p; });
         }
         {
             const std::lock_guard<std::mutex> lock(mutex);

@@ -14,8 +14,9 @@ struct FrameControl {
 
 struct FrameHistory::Impl {
     std::shared_ptr<const LightCaches> caches;
-    FrameDomain last;     ///< of the frame before, if a next one may reuse its samples
-    FinishedPass before;  ///< its last pass, if that kept samples
+    FrameDomain last;            ///< of the frame before, if a next one may reuse its samples
+    FinishedPass before;         ///< its last pass, if that kept samples
+    Buffer2D<PixelFilm> pixels;  ///< all passes since something changed, if they are accumulated
 };
 
 /// All passes of a frame by the ReSTIR estimator; builds the light caches, or takes those of the
@@ -27,8 +28,11 @@ struct FrameHistory::Impl {
 
 /// All passes of a frame without reuse: every tile on its own, so that what a pass needs stays in
 /// the processor's caches. Candidates are shaded all, not resampled: with an exact target the sum
-/// over all is the reservoir's expectation, without the noise of choosing one. False if stopped.
+/// over all is the reservoir's expectation, without the noise of choosing one. `pixels` holds
+/// the passes that count already, and takes up the new ones; null: only the new ones count. False
+/// if stopped.
 [[nodiscard]] bool render_independent_passes(const PassInputs& inputs, const FrameControl& control,
-                                             Film& film, PassCounts& counts, int64_t& dropped);
+                                             Film& film, PassCounts& counts, int64_t& dropped,
+                                             Buffer2D<PixelFilm>* pixels = nullptr);
 
 }  // namespace mote

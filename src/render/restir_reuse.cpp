@@ -138,8 +138,15 @@ void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, const DomainSto
 ReusePlan plan_reuse(const FrameDomain& domain, const RenderDescription& render,
                      const std::optional<Change>& change)
 {
+    if (domain.params.reuse == ReuseMode::Auto) {
+        ReusePlan plan;
+        plan.keeps_passes = render.samples == 1;
+        plan.accumulates = plan.keeps_passes && change && !change->any();
+        return plan;
+    }
     if (!domain.has_sampled_lights() || render.path.max_bounces == 0) return {};
     switch (domain.params.reuse) {
+        case ReuseMode::Auto:
         case ReuseMode::Off:
             return {};
         case ReuseMode::Temporal:
@@ -148,8 +155,6 @@ ReusePlan plan_reuse(const FrameDomain& domain, const RenderDescription& render,
             return {false, true};
         case ReuseMode::Both:
             return {true, true};
-        case ReuseMode::Auto:
-            return {render.samples == 1 && change && !change->any(), false};
     }
     return {};
 }

@@ -9,14 +9,16 @@ namespace mote {
 struct ReusePlan {
     bool temporal = false;
     bool spatial = false;
+    bool keeps_passes = false;  ///< this frame's passes may count for the next frames too
+    bool accumulates = false;   ///< and those of the frames before count for this one
 
-    [[nodiscard]] bool any() const { return temporal || spatial; }
+    [[nodiscard]] bool reuses_samples() const { return temporal || spatial; }
 };
 
-/// What `auto` stands for in this frame. Measured: accumulated passes gain nothing from reuse (they
-/// would only be correlated), and in motion more candidates are worth as much as history; history
-/// wins where a single pass is shown of a scene that did not change. Lights at infinity need no
-/// reservoirs.
+/// What the frame reuses. `auto`: where frames of one pass each show a scene that does not change,
+/// each frame is the mean of all passes so far: unbiased, as all estimate the same image, and at no
+/// cost. Reservoirs are left alone: measured, passes that are accumulated gain nothing from reuse
+/// (they would only be correlated), and in motion more candidates are worth more than history.
 [[nodiscard]] ReusePlan plan_reuse(const FrameDomain& domain, const RenderDescription& render,
                                    const std::optional<Change>& change);
 

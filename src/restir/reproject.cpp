@@ -65,6 +65,19 @@ bool is_same(const MovingTransform& a, const MovingTransform& b)
                       [](const Trs& p, const Trs& q) { return is_same(p, q); });
 }
 
+/// Whether two volumes scatter and glow alike where they have the same density.
+bool is_same_look(const Volume& a, const Volume& b)
+{
+    const Emission& e = a.emission_params;
+    const Emission& f = b.emission_params;
+    return a.temperature == b.temperature && a.emission == b.emission && a.color == b.color &&
+           a.albedo == b.albedo && a.phase.g == b.phase.g && a.phase.g_b == b.phase.g_b &&
+           a.phase.weight_b == b.phase.weight_b && e.emission_scale == f.emission_scale &&
+           e.emission_color == f.emission_color && e.blackbody_scale == f.blackbody_scale &&
+           e.temperature_scale == f.temperature_scale &&
+           e.temperature_offset == f.temperature_offset;
+}
+
 bool is_same(const Light& a, const Light& b)
 {
     if (a.index() != b.index()) return false;
@@ -105,7 +118,9 @@ Change change_between(const FrameDomain& before, const FrameDomain& now)
                     a.camera.lens_radius != b.camera.lens_radius ||
                     a.camera.focus_distance != b.camera.focus_distance ||
                     a.camera.width != b.camera.width || a.camera.height != b.camera.height;
-    change.media = !(before.caches->media == now.caches->media);
+    change.media = !(before.caches->media == now.caches->media) ||
+                   !std::equal(a.media.volumes.begin(), a.media.volumes.end(),
+                               b.media.volumes.begin(), b.media.volumes.end(), is_same_look);
     change.lights = !std::equal(a.lights.begin(), a.lights.end(), b.lights.begin(), b.lights.end(),
                                 [](const Light& p, const Light& q) { return is_same(p, q); }) ||
                     !is_same(a.environment, b.environment);

@@ -23,11 +23,13 @@ void describe(FieldVisitor& v, RestirParams& restir)
                 "1/M weights"},
         restir.preset, preset_names);
     if (v.assigns()) restir = make_restir_params(restir.preset);
-    visit_choice(v,
-                 {.key = "reuse",
-                  .doc = "Reservoirs that a pixel combines with its own; auto decides per frame "
-                         "from what changed and what is accumulated"},
-                 restir.reuse, reuse_names);
+    visit_choice(
+        v,
+        {.key = "reuse",
+         .doc = "Reservoirs that a pixel combines with its own; auto: none (measured best), "
+                "but frames of one pass each of a scene at rest are means of all passes so "
+                "far"},
+        restir.reuse, reuse_names);
     visit(v,
           {.key = "candidates",
            .doc = "Distances and lights tried per pixel and pass, for lamps and glowing media; one "

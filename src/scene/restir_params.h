@@ -4,7 +4,7 @@ namespace mote {
 
 /// Which reservoirs a pixel combines with its own.
 enum class ReuseMode {
-    Auto,      ///< decided per frame from what changed and what is accumulated
+    Auto,      ///< reservoirs are left alone; single passes of a still scene add up
     Off,       ///< none: independent passes
     Temporal,  ///< that of the pixel it came from, one pass ago
     Spatial,   ///< those of neighbours
