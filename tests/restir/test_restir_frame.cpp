@@ -277,5 +277,47 @@ TEST(RestirFrame, ExtremesStayFinite)
     }
 }
 
+/// Single passes of a scene at rest add up: frame n is the mean of the n images that the same
+/// frames have on their own. A change of any kind starts anew.
+TEST(RestirFrame, AutoAddsUpSinglePassesOfASceneAtRest)
+{
+    TestScene test = test::everything_at_once();
+    RenderDescription automatic = render_of(test, 1);
+    automatic.restir.reuse = ReuseMode::Auto;
+    const RenderDescription alone = render_of(test, 1);
+    OutputDescription output;
+    output.color_type = PixelType::Float;
+    FrameHistory history;
+    FrameHistory twin;  // sees the same scenes, so that its caches are the same
+    const auto frame = [&](int number, const RenderDescription& description, FrameHistory& h) {
+        FrameStats stats;
+        test.scene.frame = number;
+        return render_frame(test.scene, description, output, h, nullptr, stats);
+    };
+    const auto green = [](const LayeredImage& image) { return image.find("G")->data; };
+    std::vector<double> sum;
+    for (int n = 1; n <= 4; ++n) {
+        const Buffer2D<float> own = green(frame(n, alone, twin));
+        const Buffer2D<float> mean = green(frame(n, automatic, history));
+        sum.resize(own.size());
+        for (size_t i = 0; i < own.size(); ++i) {
+            sum[i] += static_cast<double>(own.data()[i]);
+            EXPECT_NEAR(mean.data()[i], sum[i] / n, 1e-5 * (1.0 + sum[i])) << n;
+        }
+    }
+    const auto starts_anew = [&](const char* what) {
+        const LayeredImage fresh = frame(9, alone, twin);
+        EXPECT_TRUE(same_bits(fresh, frame(9, automatic, history))) << what;
+    };
+    test.scene.lights.push_back(PointLight{Vec3(0.0f, 3.0f, 0.0f), Spectrum(1.0f)});
+    starts_anew("a light");
+    test.scene.camera.tan_half_fov_y *= 1.1f;
+    starts_anew("the camera");
+    test.scene.media.volumes.front().albedo *= 0.9f;
+    starts_anew("an albedo");
+    test.scene.camera.width += 2;
+    starts_anew("the size");
+}
+
 }  // namespace
 }  // namespace mote
