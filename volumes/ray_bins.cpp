@@ -297,6 +297,14 @@ float invert_bin(const Media& media, const Ray& ray, const RayBins& bins, int k,
     return std::clamp(invert_all(stretch, s0, s1, whole, tau), s0, s1);
 }
 
+float distance_at(const Media& media, const Ray& ray, const RayBins& bins, float tau)
+{
+    const float* first = bins.tau;
+    const auto above = std::upper_bound(first + 1, first + bins.count, tau) - first;
+    const int k = static_cast<int>(above) - 1;
+    return invert_bin(media, ray, bins, k, tau - bins.tau[k]);
+}
+
 int bin_of(const RayBins& bins, float s)
 {
     const float* first = bins.s;

@@ -48,6 +48,10 @@ void make_ray_bins(const Media& media, const Ray& ray, float cut, RayBins& bins,
 [[nodiscard]] float invert_bin(const Media& media, const Ray& ray, const RayBins& bins, int k,
                                float tau);
 
+/// The distance s at which the optical depth from the ray's origin reaches `tau`; clamped to the
+/// bins. Precondition: not empty.
+[[nodiscard]] float distance_at(const Media& media, const Ray& ray, const RayBins& bins, float tau);
+
 /// Optical depth from the ray's origin to distance s; exact, a walk over part of one bin.
 [[nodiscard]] float depth_to(const Media& media, const Ray& ray, const RayBins& bins, float s);
 

@@ -29,4 +29,20 @@ struct PathResult {
 [[nodiscard]] PathResult trace_path(const Scene& scene, const LightSampler& lights,
                                     const PathTracerParams& params, const Ray& ray, Rng& rng);
 
+/// A camera path's first scattering event.
+struct FirstScatter {
+    Vec3 x{0.0f};   ///< [m]
+    Vec3 wo{0.0f};  ///< towards the camera [unit]
+    float time = 0.0f;
+    const Phase* phase = nullptr;
+};
+
+/// What a path brings that has just scattered for the first time, the event's albedo apart:
+/// indirect is the radiance scattered at least once more before, seen at the event. direct is not
+/// estimated (0). Precondition: params.max_bounces > 1. For estimators that place the first event
+/// themselves.
+[[nodiscard]] PathResult trace_after_event(const Scene& scene, const LightSampler& lights,
+                                           const PathTracerParams& params,
+                                           const FirstScatter& first, Rng& rng);
+
 }  // namespace mote

@@ -75,11 +75,7 @@ void add_first_collision(const PassInputs& inputs, const PixelDomain& domain, fl
     sample.collided = tau < depth;
     float t = infinity;
     if (sample.collided) {
-        const float* first = domain.bins.tau;
-        const auto above = std::upper_bound(first + 1, first + domain.bins.count, tau) - first;
-        const int k = static_cast<int>(above) - 1;
-        t = domain.bins.world_t(
-            invert_bin(scene.media, domain.ray, domain.bins, k, tau - domain.bins.tau[k]));
+        t = domain.bins.world_t(distance_at(scene.media, domain.ray, domain.bins, tau));
         sample.depth = view_depth(scene.camera, domain.ray, t);
         for_each_scatterer(scene.media, domain.ray.at(t), domain.ray.time,
                            [&](const Volume& /*volume*/, float share, Spectrum albedo) {
@@ -87,6 +83,41 @@ void add_first_collision(const PassInputs& inputs, const PixelDomain& domain, fl
                            });
     }
     if (aovs.needs_motion()) sample.motion = film_motion(scene, domain.ray, t);
+}
+
+/// Light scattered twice and more, by the path tracer from exact first events on: stratified free
+/// flights, each worth the share of light that collides.
+Spectrum trace_indirect(const PassInputs& inputs, const PixelDomain& domain, Rng& rng,
+                        bool& truncated)
+{
+    const Scene& scene = *inputs.domain.scene;
+    const RayBins& bins = domain.bins;
+    const int paths = inputs.domain.params.indirect_paths;
+    const float lost = -std::expm1(-bins.depth());
+    Spectrum sum(0.0f);
+    for (int i = 0; i < paths; ++i) {
+        const float u = (static_cast<float>(i) + rng.uniform()) / static_cast<float>(paths);
+        const float tau = -std::log1p(-std::min(u, one_minus_epsilon) * lost);
+        const float choice = rng.uniform();
+        const Vec3 x = domain.ray.at(bins.world_t(distance_at(scene.media, domain.ray, bins, tau)));
+        FirstScatter first{x, domain.wo(), domain.ray.time, nullptr};
+        Spectrum albedo(0.0f);
+        float before = 0.0f;
+        for_each_scatterer(scene.media, x, first.time,
+                           [&](const Volume& volume, float share, Spectrum own) {
+                               if (!first.phase || choice >= before) {
+                                   first.phase = &volume.phase;
+                                   albedo = own;
+                               }
+                               before += share;
+                           });
+        if (!first.phase) continue;
+        const PathResult path =
+            trace_after_event(scene, inputs.lights, inputs.render.path, first, rng);
+        sum += albedo * path.indirect;
+        truncated |= path.truncated;
+    }
+    return lost / static_cast<float>(paths) * sum;
 }
 
 }  // namespace
@@ -159,13 +190,8 @@ void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray, in
     }
     ++counts.truncated;
     if (max_bounces > 1) {
-        const int paths = frame.params.indirect_paths;
         bool truncated = false;
-        for (int i = 0; i < paths; ++i) {
-            const PathResult path = trace_path(scene, inputs.lights, inputs.render.path, ray, rng);
-            sample.indirect += path.indirect / static_cast<float>(paths);
-            truncated |= path.truncated;
-        }
+        sample.indirect = trace_indirect(inputs, domain, rng, truncated);
         counts.truncated += truncated ? 0 : -1;
     }
 }
