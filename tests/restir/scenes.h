@@ -1,5 +1,6 @@
 #pragma once
 
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,12 @@ struct TestScene {
     Scene scene;
     int max_bounces = 1;
 };
+
+/// For the names of tests.
+inline void PrintTo(const TestScene& test, std::ostream* out)
+{
+    *out << test.name;
+}
 
 /// Looks from `position` at the origin, or along -z if it is there. 8 x 6 pixels.
 inline Camera small_camera(Vec3 position)

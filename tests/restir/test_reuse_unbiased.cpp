@@ -19,6 +19,12 @@ struct SceneCase {
     bool control_variate = true;
 };
 
+/// For the names of tests.
+void PrintTo(const SceneCase& scene, std::ostream* out)
+{
+    *out << scene.name;
+}
+
 /// How sharply to look.
 struct Effort {
     int frames = 4;
