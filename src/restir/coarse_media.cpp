@@ -120,7 +120,7 @@ Media coarse_media(const Media& media, float voxel_size)
 {
     Media out;
     for (const Volume& volume : media.volumes) {
-        if (!has_density(volume)) continue;
+        if (is_void(volume)) continue;
         Volume coarse;
         coarse.name = volume.name;
         coarse.density = volume.density;

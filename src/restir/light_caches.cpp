@@ -116,7 +116,7 @@ std::shared_ptr<const LightCaches> make_light_caches(
     auto out = std::make_shared<LightCaches>();
     out->media = media_key(scene.media);
     const std::vector<Volume>& volumes = scene.media.volumes;
-    if (std::none_of(volumes.begin(), volumes.end(), has_density)) {
+    if (std::all_of(volumes.begin(), volumes.end(), is_void)) {
         out->emissive.resize(volumes.size());
         return out;
     }

@@ -2,12 +2,6 @@
 
 namespace mote {
 
-bool has_density(const Volume& volume)
-{
-    return volume.density && !volume.density->index_bounds.is_empty() &&
-           volume.density_scale > 0.0f && std::isfinite(volume.density_scale);
-}
-
 Mat4d world_from_local(const Volume& volume, float time)
 {
     const Affine affine = object_from_local(volume);
@@ -26,7 +20,7 @@ float finest_voxel(const Media& media)
 {
     double finest = std::numeric_limits<double>::infinity();
     for (const Volume& volume : media.volumes) {
-        if (!has_density(volume)) continue;
+        if (is_void(volume)) continue;
         const Mat4d m = world_from_local(volume, cache_time);
         for (int axis = 0; axis < 3; ++axis) {
             const double edge = glm::length(Vec3d(m[axis]));

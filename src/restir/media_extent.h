@@ -7,9 +7,6 @@ namespace mote {
 /// Ray time at which per-frame caches see moving media: the middle of the shutter.
 inline constexpr float cache_time = 0.5f;
 
-/// Whether a volume can absorb or scatter anything.
-[[nodiscard]] bool has_density(const Volume& volume);
-
 /// Local coordinates of the density grid (index minus its `lo`) -> world space [m] at ray time
 /// [0,1].
 [[nodiscard]] Mat4d world_from_local(const Volume& volume, float time);

@@ -10,7 +10,7 @@ std::vector<Bounds3> brick_boxes(const Media& media)
 {
     std::vector<Bounds3> boxes;
     for (const Volume& volume : media.volumes) {
-        if (!has_density(volume)) continue;
+        if (is_void(volume)) continue;
         const BrickGrid& grid = *volume.density;
         const Bounds3 used = local_bounds(grid);
         std::vector<float> times = {cache_time};

@@ -27,7 +27,7 @@ std::optional<OrientedBox> box_of(const Media& media)
     OrientedBox box;
     double largest = 0.0;
     for (const Volume& volume : media.volumes) {
-        if (!has_density(volume)) continue;
+        if (is_void(volume)) continue;
         const Mat4d m = world_from_local(volume, cache_time);
         const Bounds3 local = local_bounds(*volume.density);
         const Vec3d extent(local.extent());
@@ -45,7 +45,7 @@ std::optional<OrientedBox> box_of(const Media& media)
     box.hi = -box.lo;
     const glm::dmat3 from_world = glm::inverse(box.axes);
     for (const Volume& volume : media.volumes) {
-        if (!has_density(volume)) continue;
+        if (is_void(volume)) continue;
         const Mat4d m = world_from_local(volume, cache_time);
         const Bounds3 local = local_bounds(*volume.density);
         for (int corner = 0; corner < 8; ++corner) {
@@ -224,7 +224,7 @@ TransmittanceMap::TransmittanceMap(const Media& media, Vec3 wi,
     };
     std::vector<Walked> walked;
     for (const Volume& volume : media.volumes) {
-        if (has_density(volume)) walked.push_back({&volume, frames_at(volume, cache_time).density});
+        if (!is_void(volume)) walked.push_back({&volume, frames_at(volume, cache_time).density});
     }
     const glm::dmat3 box_from_lattice = glm::inverse(lattice.from_box);
     const auto columns = static_cast<size_t>(lattice.count.x);

@@ -37,8 +37,8 @@ enum class TargetVisibility {
 /// Sets of parameters by name; keys that a scene gives besides win.
 enum class RestirPreset {
     Default,
-    Textbook,            ///< the papers' configuration: cached targets, long history; for comparison
-    Preview,             ///< closed forms without corrections: biased by the caches' coarseness
+    Textbook,  ///< the papers' configuration: cached targets, long history; for comparison
+    Preview,   ///< closed forms without corrections: biased by the caches' coarseness
     BiasedNoVisibility,  ///< reuse without shadow rays
     BiasedConstantMis,   ///< 1/M weights on the world-space shift
 };
