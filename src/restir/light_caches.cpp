@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "restir/media_extent.h"
+#include "restir/media_in_view.h"
 
 namespace mote {
 namespace {
@@ -116,7 +117,7 @@ std::shared_ptr<const LightCaches> make_light_caches(
     auto out = std::make_shared<LightCaches>();
     out->media = media_key(scene.media);
     const std::vector<Volume>& volumes = scene.media.volumes;
-    if (std::all_of(volumes.begin(), volumes.end(), is_void)) {
+    if (std::all_of(volumes.begin(), volumes.end(), is_void) || !media_in_view(scene)) {
         out->emissive.resize(volumes.size());
         return out;
     }

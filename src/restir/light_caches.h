@@ -44,7 +44,7 @@ struct CacheSizes {
 };
 
 /// Caches for a frame. Parts whose media and lights are those of `previous` (may be null) are taken
-/// over from it. Cost: nothing without media; about 0.1 s for a distant light and an
+/// over from it. Cost: nothing without media in view; about 0.1 s for a distant light and an
 /// environment around 128 x 256 x 128 voxels of smoke, in parallel.
 [[nodiscard]] std::shared_ptr<const LightCaches> make_light_caches(
     const Scene& scene, const CacheSizes& sizes,

@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "core/parallel.h"
+#include "restir/media_in_view.h"
 #include "restir/runs.h"
 #include "scene/aov_names.h"
 
@@ -317,6 +318,44 @@ TEST(RestirFrame, AutoAddsUpSinglePassesOfASceneAtRest)
     starts_anew("an albedo");
     test.scene.camera.width += 2;
     starts_anew("the size");
+}
+
+/// Media out of view cost no caches; whatever a camera ray can meet is in view.
+TEST(RestirFrame, NothingIsBuiltForMediaOutOfView)
+{
+    TestScene test = test::everything_at_once();
+    test.scene.camera.world_from_camera = {};
+    test.scene.camera.lens_radius = 0.0f;
+    test.scene.camera.world_from_camera.keys.front().translate = Vec3d(0.0, 0.0, -50.0);
+    FrameStats stats;
+    (void)render(test, render_of(test, 1), stats);  // looks along -z, away from all
+    EXPECT_EQ(stats.caches_built, 0);
+    EXPECT_EQ(stats.camera_rays, 0);
+
+    int in_view = 0;
+    int out_of_view = 0;
+    for (uint32_t trial = 0; trial < 3000; ++trial) {
+        Rng rng(7, 0, Stream::Test, trial, 0);
+        Trs& place = test.scene.camera.world_from_camera.keys.front();
+        place.translate = 6.0 * Vec3d(rng.uniform3()) - 3.0;
+        place.rotate = glm::normalize(Quatd(rng.uniform() - 0.5, rng.uniform() - 0.5,
+                                            rng.uniform() - 0.5, rng.uniform() - 0.5));
+        test.scene.camera.tan_half_fov_y = 0.05f + rng.uniform();
+        bool met = false;
+        for (int i = 0; i < 8 && !met; ++i) {
+            const Vec2 film =
+                rng.uniform2() * Vec2(test.scene.camera.width, test.scene.camera.height);
+            const Ray ray = generate_ray(test.scene.camera, film, Vec2(0.5f), rng.uniform());
+            for (const Volume& volume : test.scene.media.volumes) {
+                met = met || !volume_interval(volume, ray, {0.0f, infinity}).is_empty();
+            }
+        }
+        const bool seen = media_in_view(test.scene);
+        EXPECT_TRUE(seen || !met) << trial;
+        ++(seen ? in_view : out_of_view);
+    }
+    EXPECT_GT(in_view, 300);
+    EXPECT_GT(out_of_view, 300);
 }
 
 }  // namespace

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "scene/scene.h"
+
+namespace mote {
+
+/// Whether camera rays may meet a medium: false only if all media lie outside one side of the view
+/// pyramid. Conservative: always true for open lenses and for cameras that move while the shutter
+/// is open. What no ray can meet needs no light caches.
+[[nodiscard]] bool media_in_view(const Scene& scene);
+
+}  // namespace mote
