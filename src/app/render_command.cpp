@@ -18,6 +18,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/text.h"
+#include "image/color_of.h"
 #include "image/exr.h"
 #include "image/png.h"
 #include "render/aov.h"
@@ -66,18 +67,6 @@ PrepareNeeds needs_of(const SceneDescription& scene)
                 fmt::format("stopped before frame {} was done; the files so far are whole, "
                             "--existing skip goes on from here",
                             frame));
-}
-
-Buffer2D<Spectrum> color_of(const LayeredImage& image)
-{
-    Buffer2D<Spectrum> color(image.width, image.height);
-    const Channel* channels[] = {image.find("R"), image.find("G"), image.find("B")};
-    for (int c = 0; c < 3; ++c) {
-        if (channels[c] == nullptr) continue;
-        const float* from = channels[c]->data.data();
-        for (Spectrum& pixel : color) pixel[c] = *from++;
-    }
-    return color;
 }
 
 void write_preview(const LayeredImage& image, const FrameFiles& files, const Run& run)

@@ -2,21 +2,11 @@
 
 #include "bench/pixel_stats.h"
 #include "core/error.h"
+#include "image/color_of.h"
 
 namespace mote {
 
 namespace {
-
-Buffer2D<Spectrum> color_of(const LayeredImage& image)
-{
-    Buffer2D<Spectrum> color(image.width, image.height);
-    const Channel* channels[] = {image.find("R"), image.find("G"), image.find("B")};
-    for (int c = 0; c < 3; ++c) {
-        const float* from = channels[c]->data.data();
-        for (Spectrum& pixel : color) pixel[c] = *from++;
-    }
-    return color;
-}
 
 OutputDescription float_colors()
 {

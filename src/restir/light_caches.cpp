@@ -4,6 +4,7 @@
 
 #include "restir/media_extent.h"
 #include "restir/media_in_view.h"
+#include "restir/same.h"
 
 namespace mote {
 namespace {
@@ -12,11 +13,6 @@ bool is_same(const LocalLight& a, const LocalLight& b)
 {
     return a.id == b.id && a.position == b.position && a.spread2 == b.spread2 &&
            a.facing == b.facing && a.power == b.power;
-}
-
-bool is_same(const EnvironmentLight& a, const EnvironmentLight& b)
-{
-    return a.radiance == b.radiance && a.map == b.map && a.map_from_world == b.map_from_world;
 }
 
 Vec3 camera_position(const Camera& camera)

@@ -2,21 +2,15 @@
 
 #include <algorithm>
 
+#include "restir/same.h"
+
 namespace mote {
 namespace {
 
-bool same(const Trs& a, const Trs& b)
-{
-    return a.translate == b.translate && a.rotate == b.rotate && a.scale == b.scale;
-}
-
 bool same(const MediaKey::Item& a, const MediaKey::Item& b)
 {
-    const std::vector<Trs>& keys_a = a.world_from_object.keys;
-    const std::vector<Trs>& keys_b = b.world_from_object.keys;
     return a.density == b.density && a.density_scale == b.density_scale &&
-           std::equal(keys_a.begin(), keys_a.end(), keys_b.begin(), keys_b.end(),
-                      [](const Trs& x, const Trs& y) { return same(x, y); });
+           is_same(a.world_from_object, b.world_from_object);
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/environment.h"
+#include "restir/same.h"
 #include "volumes/media_at.h"
 
 namespace mote {
@@ -54,58 +54,6 @@ Vec3 earlier_position(const FrameDomain& before, const FrameDomain& now, Vec3 x,
     return weight > 0.0 ? Vec3(sum / weight) : x;
 }
 
-bool is_same(const Trs& a, const Trs& b)
-{
-    return a.translate == b.translate && a.rotate == b.rotate && a.scale == b.scale;
-}
-
-bool is_same(const MovingTransform& a, const MovingTransform& b)
-{
-    return std::equal(a.keys.begin(), a.keys.end(), b.keys.begin(), b.keys.end(),
-                      [](const Trs& p, const Trs& q) { return is_same(p, q); });
-}
-
-/// Whether two volumes scatter and glow alike where they have the same density.
-bool is_same_look(const Volume& a, const Volume& b)
-{
-    const Emission& e = a.emission_params;
-    const Emission& f = b.emission_params;
-    return a.temperature == b.temperature && a.emission == b.emission && a.color == b.color &&
-           a.albedo == b.albedo && a.phase.g == b.phase.g && a.phase.g_b == b.phase.g_b &&
-           a.phase.weight_b == b.phase.weight_b && e.emission_scale == f.emission_scale &&
-           e.emission_color == f.emission_color && e.blackbody_scale == f.blackbody_scale &&
-           e.temperature_scale == f.temperature_scale &&
-           e.temperature_offset == f.temperature_offset;
-}
-
-bool is_same(const Light& a, const Light& b)
-{
-    if (a.index() != b.index()) return false;
-    if (const auto* p = std::get_if<PointLight>(&a)) {
-        const auto& q = std::get<PointLight>(b);
-        return p->position == q.position && p->intensity == q.intensity;
-    }
-    if (const auto* p = std::get_if<DistantLight>(&a)) {
-        const auto& q = std::get<DistantLight>(b);
-        return p->direction == q.direction && p->irradiance == q.irradiance;
-    }
-    if (const auto* p = std::get_if<SphereLight>(&a)) {
-        const auto& q = std::get<SphereLight>(b);
-        return p->position == q.position && p->radius == q.radius && p->radiance == q.radiance;
-    }
-    const auto& p = std::get<QuadLight>(a);
-    const auto& q = std::get<QuadLight>(b);
-    return p.corner == q.corner && p.edge_u == q.edge_u && p.edge_v == q.edge_v &&
-           p.radiance == q.radiance && p.two_sided == q.two_sided;
-}
-
-bool is_same(const std::optional<EnvironmentLight>& a, const std::optional<EnvironmentLight>& b)
-{
-    if (a.has_value() != b.has_value()) return false;
-    return !a || (a->radiance == b->radiance && a->map == b->map &&
-                  a->map_from_world == b->map_from_world);
-}
-
 }  // namespace
 
 Change change_between(const FrameDomain& before, const FrameDomain& now)
@@ -123,7 +71,8 @@ Change change_between(const FrameDomain& before, const FrameDomain& now)
                                b.media.volumes.begin(), b.media.volumes.end(), is_same_look);
     change.lights = !std::equal(a.lights.begin(), a.lights.end(), b.lights.begin(), b.lights.end(),
                                 [](const Light& p, const Light& q) { return is_same(p, q); }) ||
-                    !is_same(a.environment, b.environment);
+                    a.environment.has_value() != b.environment.has_value() ||
+                    (a.environment && !is_same(*a.environment, *b.environment));
     return change;
 }
 

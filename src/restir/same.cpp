@@ -1,0 +1,53 @@
+#include "restir/same.h"
+
+#include <algorithm>
+
+namespace mote {
+
+bool is_same(const MovingTransform& a, const MovingTransform& b)
+{
+    return std::equal(
+        a.keys.begin(), a.keys.end(), b.keys.begin(), b.keys.end(), [](const Trs& p, const Trs& q) {
+            return p.translate == q.translate && p.rotate == q.rotate && p.scale == q.scale;
+        });
+}
+
+bool is_same(const Light& a, const Light& b)
+{
+    if (a.index() != b.index()) return false;
+    if (const auto* p = std::get_if<PointLight>(&a)) {
+        const auto& q = std::get<PointLight>(b);
+        return p->position == q.position && p->intensity == q.intensity;
+    }
+    if (const auto* p = std::get_if<DistantLight>(&a)) {
+        const auto& q = std::get<DistantLight>(b);
+        return p->direction == q.direction && p->irradiance == q.irradiance;
+    }
+    if (const auto* p = std::get_if<SphereLight>(&a)) {
+        const auto& q = std::get<SphereLight>(b);
+        return p->position == q.position && p->radius == q.radius && p->radiance == q.radiance;
+    }
+    const auto& p = std::get<QuadLight>(a);
+    const auto& q = std::get<QuadLight>(b);
+    return p.corner == q.corner && p.edge_u == q.edge_u && p.edge_v == q.edge_v &&
+           p.radiance == q.radiance && p.two_sided == q.two_sided;
+}
+
+bool is_same(const EnvironmentLight& a, const EnvironmentLight& b)
+{
+    return a.radiance == b.radiance && a.map == b.map && a.map_from_world == b.map_from_world;
+}
+
+bool is_same_look(const Volume& a, const Volume& b)
+{
+    const Emission& e = a.emission_params;
+    const Emission& f = b.emission_params;
+    return a.temperature == b.temperature && a.emission == b.emission && a.color == b.color &&
+           a.albedo == b.albedo && a.phase.g == b.phase.g && a.phase.g_b == b.phase.g_b &&
+           a.phase.weight_b == b.phase.weight_b && e.emission_scale == f.emission_scale &&
+           e.emission_color == f.emission_color && e.blackbody_scale == f.blackbody_scale &&
+           e.temperature_scale == f.temperature_scale &&
+           e.temperature_offset == f.temperature_offset;
+}
+
+}  // namespace mote
