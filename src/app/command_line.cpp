@@ -85,6 +85,12 @@ void bind_render(CLI::App& app, RenderOptions& o, std::vector<std::string>& shor
     bind_shorthand(app, shorthands, "--seed", "render.seed", "N", "Seed of the random numbers");
     bind_resolution(app, shorthands);
     bind_overrides(app, o.overrides);
+    app.add_option("--warmup", o.warmup,
+                   "Frames rendered before the first one, and not written, so that reuse over time "
+                   "starts with a history. None before the scene's first frame; 0 (the default): "
+                   "the first frame is as noisy as one without history")
+        ->check(CLI::Range(0, 1000))
+        ->type_name("N");
     app.add_option("--threads", o.threads,
                    "Threads. Default: those this process may use (affinity, SLURM_CPUS_PER_TASK)")
         ->check(CLI::Range(1, 1024))

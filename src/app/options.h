@@ -35,6 +35,7 @@ struct RenderOptions {
     ExistingMode existing = ExistingMode::Overwrite;
     ProgressMode progress = ProgressMode::Auto;
     std::string stats;
+    int warmup = 0;             ///< frames rendered for history before the first one
     int threads = 0;            ///< 0: those this process may use
     double memory_limit = 0.0;  ///< [bytes]; 0: none
     bool dry_run = false;

@@ -47,6 +47,7 @@ struct Run {
     SceneCache cache;
     FrameHistory history;
     std::vector<FrameRecord> records;
+    bool is_warm = false;
 };
 
 PrepareNeeds needs_of(const SceneDescription& scene)
@@ -95,6 +96,22 @@ ExistingImage existing_image(const FrameFiles& files, const Run& run)
         expected.inputs_hash = inputs_hash(scene, files.frame);
     }
     return check_existing(files.image, run.options.existing, expected);
+}
+
+/// Renders the frames before `first` into the history, and nowhere else.
+void warm_up(int first, Run& run)
+{
+    const SceneDescription& scene = run.scene;
+    if (run.options.warmup == 0 || !uses_history(scene.render)) return;
+    const int start = std::max(first - run.options.warmup, std::min(scene.first_frame, first));
+    for (int frame = start; frame < first; ++frame) {
+        if (stop_requested()) throw_interrupted(first);
+        spdlog::info("frame {} warms up frame {}", frame, first);
+        PrepareStats prepared;
+        const Scene before = prepare_frame(scene, frame, needs_of(scene), run.cache, prepared);
+        FrameStats stats;
+        (void)render_frame(before, scene.render, {}, run.history, stop_requested, stats);
+    }
 }
 
 void render_one(const FrameFiles& files, Run& run, Progress& progress, FrameRecord& record)
@@ -162,6 +179,8 @@ void render_all(Run& run, Progress& progress)
             spdlog::info("{} kept: {}", files.image, existing.reason);
             progress.skip_frame(files.frame, files.image);
         } else {
+            if (!run.is_warm) warm_up(files.frame, run);
+            run.is_warm = true;
             render_one(files, run, progress, record);
         }
         run.records.push_back(std::move(record));
@@ -215,7 +234,7 @@ void run_render(const RenderOptions& options)
     const std::vector<int> frames = chosen_frames(options.frames, scene);
     files = frame_files(frames, scene.output.path, scene.output.preview);
     written_files = &files;
-    Run run{options, scene, files, chosen_threads(options.threads), {}, {}, {}};
+    Run run{options, scene, files, chosen_threads(options.threads), {}, {}, {}, false};
     run_with_threads(run.threads, [&] {
         if (options.dry_run) {
             dry_run(run);

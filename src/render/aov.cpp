@@ -61,13 +61,20 @@ std::vector<AovInfo> make_table()
          {"restir.M", "restir.W", "restir.age"},
          true,
          "The pixel's reservoir, mean over the passes: confidence M [passes], contribution weight "
-         "W, "
-         "passes since its sample was drawn; 0 without reuse and of the path estimator"},
+         "W, passes since its sample was drawn; 0 without reuse and of the path estimator"},
         {Aov::Cost,
          "cost",
          {"cost.Y"},
          true,
          "Exact rays per pass, camera ray and light rays together; 0 of the path estimator"},
+        {Aov::Work,
+         "work",
+         {"work.candidates", "work.cells", "work.acceptance"},
+         true,
+         "Work per pass: candidates drawn, cells that the camera ray crossed, and of the "
+         "reservoirs "
+         "that reuse looked at (history, neighbours) the share that took part; 0 of the path "
+         "estimator"},
     };
 }
 

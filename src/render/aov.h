@@ -23,8 +23,9 @@ enum class Aov {
     OpticalDepth,
     Restir,
     Cost,
+    Work,
 };
-inline constexpr size_t aov_count = 14;
+inline constexpr size_t aov_count = 15;
 
 /// One row of the table of layers.
 struct AovInfo {

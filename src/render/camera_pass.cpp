@@ -159,12 +159,14 @@ void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray, in
     const FrameDomain& frame = inputs.domain;
     const Scene& scene = *frame.scene;
     const PassSequence numbers = pass_numbers(inputs, key);
+    const int64_t cells_before = counts.bins.cells;
     make_pixel_domain(frame, ray, domain, counts.bins);
 
     const float depth = domain.bins.depth();
     sample.transmittance = std::exp(-depth);
     sample.optical_depth = depth;
     sample.exact_rays = domain.bins.empty() ? 0.0f : 1.0f;
+    sample.work.y = static_cast<float>(counts.bins.cells - cells_before);
     if (inputs.aovs.has(Aov::OpticalDepth) && sample.transmittance <= frame.transmittance_cut) {
         // The bins may end before the media do.
         sample.optical_depth = optical_depth(scene.media, ray, {0.0f, infinity});

@@ -33,6 +33,7 @@ bool PixelFilm::add(const FilmSample& sample)
     exact_transmittance_ += std::exp(-tau);
     optical_depth_ += tau;
     reservoir_.add(sample.reservoir);
+    work_.add(sample.work);
     exact_rays_ += static_cast<double>(sample.exact_rays);
     if (sample.collided) {
         ++collisions_;
@@ -120,6 +121,9 @@ void PixelFilm::layer(Aov aov, float (&values)[3]) const
             break;
         case Aov::Cost:
             values[0] = static_cast<float>(exact_rays_ / n);
+            break;
+        case Aov::Work:
+            store(work_.mean(count()));
             break;
     }
 }

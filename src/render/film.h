@@ -24,6 +24,7 @@ struct FilmSample {
     float optical_depth = 0.0f;  ///< in closed form, where a layer needs it
     Vec3 reservoir{0.0f};        ///< M, W, age
     float exact_rays = 0.0f;     ///< towards camera and lights
+    Vec3 work{0.0f};             ///< candidates, cells of the camera ray, acceptance of reuse
 
     [[nodiscard]] Spectrum L() const { return direct + indirect + emission + background; }
     [[nodiscard]] bool is_finite() const;
@@ -54,7 +55,7 @@ class PixelFilm {
 
   private:
     RunningStats rgb_[3];
-    MeanSpectrum direct_, indirect_, emission_, background_, albedo_, reservoir_;
+    MeanSpectrum direct_, indirect_, emission_, background_, albedo_, reservoir_, work_;
     double transmittance_ = 0.0;
     double exact_transmittance_ = 0.0;
     double optical_depth_ = 0.0;

@@ -102,6 +102,22 @@ bool render_paths(const FrameInputs& frame, const FrameControl& control, Film& f
 FrameHistory::FrameHistory() : impl_(std::make_unique<Impl>()) {}
 FrameHistory::~FrameHistory() = default;
 
+bool uses_history(const RenderDescription& render)
+{
+    if (render.estimator != EstimatorKind::Restir) return false;
+    switch (render.restir.reuse) {
+        case ReuseMode::Off:
+        case ReuseMode::Spatial:
+            return false;
+        case ReuseMode::Auto:
+            return render.samples == 1;
+        case ReuseMode::Temporal:
+        case ReuseMode::Both:
+            return true;
+    }
+    return false;
+}
+
 LayeredImage render_frame(const Scene& scene, const RenderDescription& render,
                           const OutputDescription& output, FrameHistory& history,
                           StopRequested stop, FrameStats& stats, TileDone tile_done)

@@ -49,6 +49,9 @@ class FrameHistory {
     std::unique_ptr<Impl> impl_;
 };
 
+/// Whether frames rendered before one can change it, apart from the time taken: reuse over time.
+[[nodiscard]] bool uses_history(const RenderDescription& render);
+
 /// Renders one frame into a layered image holding RGBA and the layers of output.aovs (see aov.h),
 /// nothing else: layers not asked for are not computed. RGB is the mean over the pixel's square,
 /// premultiplied by nothing but the volumes themselves; A is 1 minus the mean transmittance.

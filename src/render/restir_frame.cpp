@@ -42,6 +42,7 @@ void trace_tile_pass(const PassInputs& inputs, const Tile& tile, uint32_t pass,
             draw_candidates(frame, scratch.domain, frame.params.candidates, rng,
                             scratch.candidates);
             counts.candidates += static_cast<int64_t>(scratch.candidates.size());
+            sample.work.x = static_cast<float>(scratch.candidates.size());
             for (const Candidate& c : scratch.candidates) {
                 const Spectrum weight = c.f / c.density;
                 scratch.rays.add(owner, c.x, c.arrival.wi, c.arrival.distance,
@@ -79,10 +80,9 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
     const double cpu_start = process_cpu_seconds();
     history.caches = make_light_caches(scene, {pixel_passes(render)}, history.caches);
     stats.cache_cpu_seconds = process_cpu_seconds() - cpu_start;
-    const bool may_reuse = render.restir.reuse != ReuseMode::Off &&
-                           !(render.restir.reuse == ReuseMode::Auto && render.samples > 1);
+    const bool keeps_history = uses_history(render);
     const FrameDomain domain =
-        make_frame_domain(share(scene, may_reuse), history.caches, render.restir);
+        make_frame_domain(share(scene, keeps_history), history.caches, render.restir);
     std::optional<Change> change;
     if (history.last.scene) change = change_between(history.last, domain);
     const ReusePlan plan = plan_reuse(domain, render, change);
@@ -103,7 +103,7 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
             render_independent_passes(inputs, control, film, counts, stats.dropped_non_finite,
                                       plan.keeps_passes ? &history.pixels : nullptr);
     }
-    history.last = may_reuse ? domain : FrameDomain{};
+    history.last = keeps_history ? domain : FrameDomain{};
     stats.truncated_paths = counts.truncated;
     stats.camera_rays = counts.bins.rays;
     stats.light_rays = static_cast<int64_t>(counts.light_rays.rays);

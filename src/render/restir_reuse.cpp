@@ -11,13 +11,18 @@ namespace {
 /// Whole-image buffers of a pass under way.
 struct PassBuffers {
     PassBuffers(int width, int height)
-        : samples(width, height), current(width, height), next(width, height), colors(width, height)
+        : samples(width, height),
+          current(width, height),
+          next(width, height),
+          colors(width, height),
+          acceptance(width, height)
     {
     }
     Buffer2D<FilmSample> samples;
     Buffer2D<PixelReservoir> current;
     Buffer2D<PixelReservoir> next;
     Buffer2D<Spectrum> colors;  ///< of the sampled lights
+    Buffer2D<Acceptance> acceptance;
 };
 
 /// Everything of one frame's passes.
@@ -85,6 +90,7 @@ void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, const DomainSto
             const PassKey key{x, y, pass};
             FilmSample& sample = buffers.samples.at(x, y);
             sample = {};
+            buffers.acceptance.at(x, y) = {};
             const auto owner = static_cast<int>(samples.size());
             samples.push_back(&sample);
             const Ray ray = kept ? kept->ray(x, y) : camera_ray(inputs, key);
@@ -100,6 +106,7 @@ void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, const DomainSto
             domains.store(x, y, domain);
             ranges.push_back({first, candidates.size() - first});
             sample.exact_rays += static_cast<float>(candidates.size() - first);
+            sample.work.x = static_cast<float>(candidates.size() - first);
             for (size_t i = first; i < candidates.size(); ++i) {
                 const Candidate& c = candidates[i];
                 if (frame.params.visibility == TargetVisibility::Cached) {
@@ -183,7 +190,7 @@ bool render_reusing_passes(const PassInputs& inputs, const ReusePlan& plan,
         run.for_tiles([&](const Tile& tile, PassCounts& n) {
             run.fill_initial(tile, pass, kept, now.domains, n);
         });
-        const ReuseOutput out{buffers.next, buffers.colors};
+        const ReuseOutput out{buffers.next, buffers.colors, buffers.acceptance};
         if (plan.temporal && !before.empty()) {
             const bool still = !change_between(before.frame, frame).any();
             run.for_tiles([&](const Tile& tile, PassCounts& n) {
@@ -220,6 +227,7 @@ bool render_reusing_passes(const PassInputs& inputs, const ReusePlan& plan,
             const Reservoir& r = buffers.current.data()[i].r;
             sample.direct += buffers.colors.data()[i];
             sample.reservoir = Vec3(r.M, r.W, r.age);
+            sample.work.z = buffers.acceptance.data()[i].share();
             dropped += pixels.data()[i].add(sample) ? 0 : 1;
         }
         before = std::move(now);

@@ -70,6 +70,8 @@ void reuse_in_time(const PassView& pass, const FinishedPass& before, bool still,
             scratch.begin_pixel(pass.reservoirs.at(x, y));
             pass.domains.load(x, y, own);
             if (!(own.Z() > 0.0f)) continue;
+            Acceptance& acceptance = out.acceptance.at(x, y);
+            ++acceptance.asked;
             const std::optional<PreviousPixel> from =
                 still ? PreviousPixel{x, y, Vec3(0.0f)}
                       : previous_pixel(before.frame, pass.frame, own, true);
@@ -85,6 +87,7 @@ void reuse_in_time(const PassView& pass, const FinishedPass& before, bool still,
                 agreement * std::min(history.M, cap_of(params.temporal, still));
             if (!(confidence > 0.0f)) continue;
             ++counts.histories;
+            ++acceptance.used;
             Reservoir aged = history;
             aged.age += 1.0f;
             scratch.add_other({pass.frame, own}, {before.frame, earlier}, aged, confidence, map);
@@ -110,8 +113,10 @@ void reuse_in_space(const PassView& pass, const Tile& tile, const PixelRng& rng,
             if (!(own.Z() > 0.0f)) continue;
             Rng numbers = rng(x, y);
             const float turn = 2.0f * pi * numbers.uniform();
+            Acceptance& acceptance = out.acceptance.at(x, y);
             for (int i = 0; i < params.neighbours; ++i) {
                 // Vogel's spiral: even in area, at the golden angle.
+                ++acceptance.asked;
                 const float share =
                     (static_cast<float>(i) + 0.5f) / static_cast<float>(params.neighbours);
                 const float radius = std::max(1.0f, params.radius_px * std::sqrt(share));
@@ -123,6 +128,7 @@ void reuse_in_space(const PassView& pass, const Tile& tile, const PixelRng& rng,
                 }
                 if ((nx == x && ny == y) || !(pass.domains.depth(nx, ny) > 0.0f)) continue;
                 ++counts.neighbours;
+                ++acceptance.used;
                 pass.domains.load(nx, ny, other);
                 const Reservoir& reservoir = pass.reservoirs.at(nx, ny).r;
                 scratch.add_other({pass.frame, own}, {pass.frame, other}, reservoir, reservoir.M,

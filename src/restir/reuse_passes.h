@@ -19,13 +19,25 @@ struct ReuseCounts {
     int64_t neighbours = 0;
 };
 
+/// Reservoirs that a pixel's reuse looked at in a pass, and those of them that took part.
+struct Acceptance {
+    uint16_t asked = 0;
+    uint16_t used = 0;
+
+    [[nodiscard]] float share() const
+    {
+        return asked > 0 ? static_cast<float>(used) / static_cast<float>(asked) : 0.0f;
+    }
+};
+
 /// Random numbers of a pixel for one purpose.
 using PixelRng = std::function<Rng(int x, int y)>;
 
 /// Where a reuse pass writes: the pixels of its tile, in both.
 struct ReuseOutput {
     Buffer2D<PixelReservoir>& reservoirs;
-    Buffer2D<Spectrum>& colors;  ///< radiance of the sampled lights
+    Buffer2D<Spectrum>& colors;        ///< radiance of the sampled lights
+    Buffer2D<Acceptance>& acceptance;  ///< added to
 };
 
 /// Combines each pixel of a tile with the pixel it was in the pass before (or in the frame before,

@@ -189,6 +189,32 @@ TEST_F(RenderCommand, PixelsDoNotDependOnThreadsOrOnEarlierFrames)
     EXPECT_NE(read_bytes(folder.file("o.exr")), reference);
 }
 
+/// A warmed-up frame is the frame that a run of the frames before it would have made.
+TEST_F(RenderCommand, WarmUpGivesTheFirstFrameItsHistory)
+{
+    const Names restir = {"--set",     "render.estimator=restir",
+                          "--set",     "render.restir.reuse=temporal",
+                          "--set",     "render.restir.control_variate=false",
+                          "--samples", "1"};
+    const auto render_to = [&](const std::string& pattern, Names arguments) {
+        arguments.insert(arguments.end(), {"--output", pattern});
+        arguments.insert(arguments.end(), restir.begin(), restir.end());
+        const Finished run = render(arguments);
+        ASSERT_EQ(run.exit_code, 0) << run.err;
+    };
+    render_to("all.####.exr", {});
+    render_to("cold.exr", {"--frames", "3"});
+    render_to("one.exr", {"--frames", "3", "--warmup", "1"});
+    render_to("many.exr", {"--frames", "3", "--warmup", "99"});
+    const auto bytes = [&](const char* name) { return read_bytes(folder.file(name)); };
+    EXPECT_EQ(bytes("many.exr"), bytes("all.0003.exr"));
+    EXPECT_NE(bytes("cold.exr"), bytes("many.exr"));
+    EXPECT_NE(bytes("one.exr"), bytes("cold.exr"));
+    EXPECT_EQ(files_below(folder.path()), (Names{"all.0001.exr", "all.0002.exr", "all.0003.exr",
+                                                 "cold.exr", "many.exr", "one.exr", "scene.toml"}));
+    EXPECT_NE(render({"--warmup", "-1"}).exit_code, 0);
+}
+
 TEST_F(RenderCommand, OnlyReproducibleFilesLeaveTheTimesOut)
 {
     ASSERT_EQ(render({"--frames", "1"}).exit_code, 0);

@@ -126,6 +126,33 @@ TEST(RestirFrameStat, DataLayersAreThoseOfThePathTracer)
     }
 }
 
+TEST(RestirFrame, TheWorkLayerAddsUpToTheCounters)
+{
+    TestScene test = test::everything_at_once();
+    RenderDescription description = render_of(test, 2);
+    description.restir.reuse = ReuseMode::Spatial;
+    FrameStats stats;
+    const LayeredImage image = render(test, description, stats);
+    const auto sum = [&](const char* channel) {
+        double total = 0.0;
+        for (const float v : image.find(channel)->data) total += static_cast<double>(v);
+        return total;
+    };
+    EXPECT_EQ(2.0 * sum("work.candidates"), static_cast<double>(stats.candidates));
+    EXPECT_GT(sum("work.cells"), 0.0);
+    EXPECT_LT(2.0 * sum("work.cells"), static_cast<double>(stats.cells));  // light rays have theirs
+    const Buffer2D<float>& acceptance = image.find("work.acceptance")->data;
+    const Buffer2D<float>& depth = image.find("opticalDepth.Y")->data;
+    double used = 0.0;
+    for (size_t i = 0; i < acceptance.size(); ++i) {
+        const float share = acceptance.data()[i];
+        EXPECT_TRUE(share >= 0.0f && share <= 1.0f) << share;
+        EXPECT_TRUE(share == 0.0f || depth.data()[i] > 0.0f);
+        used += static_cast<double>(share) * description.restir.spatial.neighbours;
+    }
+    EXPECT_NEAR(2.0 * used, static_cast<double>(stats.neighbours_used), 1e-3 * 2.0 * used);
+}
+
 /// Counters of work on light.
 void expect_idle(const FrameStats& stats, const std::string& what)
 {
