@@ -27,6 +27,17 @@ using EmissionWeight = std::function<float(float t, Vec3 p_object)>;
 [[nodiscard]] Spectrum estimate_emission(const Volume& volume, const Ray& ray, Interval range,
                                          Rng& rng, const EmissionWeight& weight);
 
+/// The emission grid's term of j alone, with a lookup for every `cells_per_lookup` cells or less:
+/// for few rays that have to be exact.
+[[nodiscard]] Spectrum estimate_grid_emission(const Volume& volume, const Ray& ray, Interval range,
+                                              float cells_per_lookup, Rng& rng,
+                                              const EmissionWeight& weight);
+
+/// Source function of the term that follows the density: j over sigma_t [W/(m^2 sr)] at an
+/// object-space point. Where it is constant, a medium of optical depth tau shows 1 - exp(-tau) of
+/// it.
+[[nodiscard]] Spectrum source_at(const Volume& volume, Vec3 p_object);
+
 /// Where a volume emits: a distribution over brick positions, about in proportion to the power
 /// they give off, never 0 where j is not. Object space, so it holds for the whole shutter.
 struct EmissiveBricks {

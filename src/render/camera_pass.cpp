@@ -3,8 +3,8 @@
 #include "reference/path_tracer.h"
 #include "render/motion.h"
 #include "render/view_depth.h"
+#include "restir/emission_along.h"
 #include "scene/environment.h"
-#include "volumes/emission.h"
 #include "volumes/media_at.h"
 
 namespace mote {
@@ -49,18 +49,6 @@ Spectrum seen_background(const PassInputs& inputs, const PixelDomain& domain, fl
         const std::optional<LightHit> hit = hit_light(light, domain.ray.o, domain.ray.d);
         if (hit) sum += transmittance_to(inputs.domain, domain, hit->distance) * hit->Le;
     });
-    return sum;
-}
-
-Spectrum seen_emission(const PassInputs& inputs, const PixelDomain& domain, Rng& rng)
-{
-    Spectrum sum(0.0f);
-    for (const Volume& volume : inputs.domain.scene->media.volumes) {
-        if (!volume.emission_params.is_on()) continue;
-        sum += estimate_emission(volume, domain.ray, {0.0f, infinity}, rng, [&](float t, Vec3) {
-            return transmittance_to(inputs.domain, domain, t);
-        });
-    }
     return sum;
 }
 
@@ -174,7 +162,7 @@ void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray, in
     sample.background = seen_background(inputs, domain, sample.transmittance);
     if (frame.has_emission) {
         Rng rng = pass_rng(inputs, key, Stream::Shade);
-        sample.emission = seen_emission(inputs, domain, rng);
+        sample.emission = emission_along(frame, domain, rng);
     }
     if (domain.bins.empty() && !inputs.aovs.needs_motion()) return;
     if (inputs.aovs.needs_first_collision()) {

@@ -45,8 +45,6 @@ FrameDomain make_frame_domain(std::shared_ptr<const Scene> scene,
         if (caches->emissive[i]) {
             add(SampledLightKind::EmissiveVolume, static_cast<int>(i), false);
         }
-        frame.emission_lengths.push_back(
-            glm::length(world_bounds(scene->media.volumes[i]).extent()));
     }
     if (scene->environment) add(SampledLightKind::Environment, 0, true);
     frame.samples_local = caches->cells && !caches->cells->is_empty();

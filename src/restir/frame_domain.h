@@ -30,7 +30,6 @@ struct FrameDomain {
     std::vector<int> infinite;   ///< of `lights`: those at infinity that do so too
     /// Of `lights`: those that phase-function directions look for, see phase_candidates.h.
     std::vector<int> phase_lights;
-    std::vector<float> emission_lengths;  ///< of each volume: diagonal of its bounds [m]
     bool has_phase_candidates = false;
     bool has_emission = false;        ///< some medium glows
     bool has_motion = false;          ///< camera or media move while the shutter is open

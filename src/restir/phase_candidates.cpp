@@ -4,15 +4,10 @@
 
 #include "restir/mixed_phase.h"
 #include "scene/environment.h"
+#include "volumes/emissive_line.h"
 
 namespace mote {
 namespace {
-
-/// Distances along a phase-function ray count as uniform over this length [m]: that of the volume.
-float emission_length(const FrameDomain& frame, const SampledLight& light)
-{
-    return frame.emission_lengths[static_cast<size_t>(light.index)];
-}
 
 /// The two numbers for which sample_light returns a point of a quad.
 Vec2 quad_numbers(const QuadLight& quad, Vec3 p)
@@ -46,8 +41,12 @@ float phase_candidate_density(const FrameDomain& frame, Vec3 x, float time, Vec3
         case SampledLightKind::Environment:
             return phase;
         case SampledLightKind::EmissiveVolume: {
-            const float length = emission_length(frame, light);
-            return arrival.distance < length ? phase / (sqr(arrival.distance) * length) : 0.0f;
+            const auto i = static_cast<size_t>(light.index);
+            const float pdf =
+                emissive_line_pdf(frame.scene->media.volumes[i], *frame.caches->emissive[i],
+                                  {x, arrival.wi, time}, arrival.distance);
+            const float density = phase * pdf / sqr(arrival.distance);
+            return density < infinity ? density : 0.0f;
         }
         default: {
             const Light& lamp = frame.scene->lights[static_cast<size_t>(light.index)];
@@ -85,7 +84,10 @@ void for_each_phase_hit(const FrameDomain& frame, Vec3 x, float time, Vec3 wo, R
             case SampledLightKind::EmissiveVolume: {
                 const auto i = static_cast<size_t>(light.index);
                 const Volume& volume = frame.scene->media.volumes[i];
-                const Vec3 p = x + rng.uniform() * emission_length(frame, light) * wi;
+                const std::optional<LineSample> sample = sample_emissive_line(
+                    volume, *frame.caches->emissive[i], {x, wi, time}, rng.uniform());
+                if (!sample) break;
+                const Vec3 p = x + sample->t * wi;
                 report(index, p,
                        emission_pdf(volume, *frame.caches->emissive[i], time,
                                     object_point(volume, p, time)));
