@@ -61,7 +61,7 @@ class InfiniteLights {
     }
 
     [[nodiscard]] Spectrum correct_distant(float u, float u_light, float share, int owner,
-                                           float pixel_luminance, LightRays& rays) const;
+                                           float pixel_luminance, Rng& rng, LightRays& rays) const;
     [[nodiscard]] Spectrum correct_environment(float u, Vec2 u_direction, float u_choice,
                                                float share, int owner, float pixel_luminance,
                                                Rng& rng, LightRays& rays) const;
@@ -79,27 +79,23 @@ class InfiniteLights {
         // At the border of all media the mixture is that of the edge before.
         if (edge.media.count == 0 && k > 0) edge.media = edges_[k - 1].media;
         for (const LightCaches::Distant& distant : frame_.caches->distant) {
-            edge.distant += cached_distant(edge, distant);
+            edge.distant += distant.irradiance * cached_distant(edge, distant);
         }
         if (frame_.caches->environment) edge.environment = cached_environment(edge);
     }
 
-    [[nodiscard]] const DistantLight& lamp(const LightCaches::Distant& distant) const
-    {
-        return std::get<DistantLight>(frame_.scene->lights[static_cast<size_t>(distant.light)]);
-    }
-
+    /// Per unit of irradiance.
     [[nodiscard]] Spectrum cached_distant(const EdgeLight& edge,
                                           const LightCaches::Distant& distant) const
     {
-        const DistantLight& light = lamp(distant);
         Spectrum scattering(0.0f);
         for (int i = 0; i < edge.media.count; ++i) {
             const Mixture::Part& part = edge.media.parts[i];
-            scattering += (part.share * eval_phase(part.volume->phase, -ray_.d, light.direction)) *
-                          part.albedo;
+            scattering +=
+                (part.share * eval_phase(part.volume->phase, -ray_.d, distant.direction)) *
+                part.albedo;
         }
-        return scattering * light.irradiance * distant.map->transmittance(edge.x);
+        return scattering * distant.map->transmittance(edge.x);
     }
 
     [[nodiscard]] Spectrum cached_environment(const EdgeLight& edge) const
@@ -160,30 +156,41 @@ Spectrum between(Spectrum near, Spectrum far, float lambda)
 }
 
 Spectrum InfiniteLights::correct_distant(float u, float u_light, float share, int owner,
-                                         float pixel_luminance, LightRays& rays) const
+                                         float pixel_luminance, Rng& rng, LightRays& rays) const
 {
     const auto& distant = frame_.caches->distant;
     // One light per ray, in proportion to its irradiance.
     float total = 0.0f;
-    for (const auto& d : distant) total += luminance(lamp(d).irradiance);
+    for (const auto& d : distant) total += luminance(d.irradiance);
     if (!(total > 0.0f)) return Spectrum(0.0f);
     size_t i = 0;
-    float pmf = luminance(lamp(distant[0]).irradiance) / total;
+    float pmf = luminance(distant[0].irradiance) / total;
     for (float before = 0.0f; i + 1 < distant.size() && u_light >= before + pmf;) {
         before += pmf;
-        pmf = luminance(lamp(distant[++i]).irradiance) / total;
+        pmf = luminance(distant[++i].irradiance) / total;
     }
     if (!(pmf > 0.0f)) return Spectrum(0.0f);
-    const DistantLight& light = lamp(distant[i]);
+    Vec3 wi = distant[i].direction;
+    Spectrum irradiance = distant[i].irradiance;
+    if (distant[i].spot >= 0) {
+        const EnvironmentParts& parts = *frame_.caches->parts;
+        const float u_pixel = rng.uniform();
+        const LightSample sample = sample_spot(
+            parts, parts.spots[static_cast<size_t>(distant[i].spot)], u_pixel, rng.uniform2());
+        wi = sample.wi;
+        irradiance = sample.Li / sample.pdf_dir;
+    }
     const Flight flight = free_flight(u);
-    const float weight = share * lost_ / pmf;
-    const Spectrum f = weight * light.irradiance *
-                       scattering_at(frame_, flight.x, ray_.time, -ray_.d, light.direction);
-    rays.add(owner, flight.x, light.direction, infinity, ray_.time, f,
-             depth_that_matters(f, pixel_luminance));
+    const float per_irradiance = share * lost_ / pmf;
+    const Spectrum weight = per_irradiance * irradiance;
+    const Spectrum f = weight * scattering_at(frame_, flight.x, ray_.time, -ray_.d, wi);
+    rays.add(owner, flight.x, wi, infinity, ray_.time, f, depth_that_matters(f, pixel_luminance));
     const EdgeLight& near = edges_[flight.bin];
     const EdgeLight& far = edges_[flight.bin + 1];
-    if (distant.size() == 1) return -weight * between(near.distant, far.distant, flight.lambda);
+    if (distant.size() == 1 && distant[i].spot < 0) {
+        return -per_irradiance * between(near.distant, far.distant, flight.lambda);
+    }
+    // The same irradiance on both sides: how it varies over a spot makes no noise.
     return -weight * between(cached_distant(near, distant[i]), cached_distant(far, distant[i]),
                              flight.lambda);
 }
@@ -192,7 +199,7 @@ Spectrum InfiniteLights::correct_environment(float u, Vec2 u_direction, float u_
                                              int owner, float pixel_luminance, Rng& rng,
                                              LightRays& rays) const
 {
-    const EnvironmentLight& environment = *frame_.scene->environment;
+    const EnvironmentLight& environment = frame_.caches->parts->rest;
     const Flight flight = free_flight(u);
     const Vec3 wo = -ray_.d;
     const MixedPhase phase = mixed_phase_at(frame_.scene->media, flight.x, ray_.time);
@@ -246,7 +253,7 @@ Spectrum scatter_infinite_lights(const FrameDomain& frame, const Ray& ray, const
         const float step = static_cast<float>(i) * share;
         sum += lights.correct_distant(shifted(distance.x, step),
                                       shifted(choice.x, 0.618034f * static_cast<float>(i)), share,
-                                      owner, known, rays);
+                                      owner, known, rng, rays);
     }
     const int environment_rays = caches.environment ? frame.params.environment_rays : 0;
     for (int i = 0; i < environment_rays; ++i) {

@@ -35,17 +35,16 @@ float infinite_inscatter(const FrameDomain& frame, const SampledLight& light, Ve
 {
     const LightCaches& caches = *frame.caches;
     float sum = 0.0f;
-    if (light.kind == SampledLightKind::Environment) {
-        if (caches.environment) sum = luminance(caches.environment->inscatter(0, x));
-    } else {
-        for (const LightCaches::Distant& distant : caches.distant) {
-            if (distant.light != light.index) continue;
-            const auto& lamp =
-                std::get<DistantLight>(frame.scene->lights[static_cast<size_t>(light.index)]);
-            const Phase& phase = frame.scene->media.volumes.front().phase;
-            sum = luminance(lamp.irradiance) * eval_phase(phase, wo, lamp.direction) *
-                  distant.map->transmittance(x);
-        }
+    const bool is_environment = light.kind == SampledLightKind::Environment;
+    if (is_environment && caches.environment) {
+        sum = luminance(caches.environment->inscatter(0, x));
+    }
+    for (const LightCaches::Distant& distant : caches.distant) {
+        const bool belongs = is_environment ? distant.spot >= 0 : distant.light == light.index;
+        if (!belongs) continue;
+        const Phase& phase = frame.scene->media.volumes.front().phase;
+        sum += luminance(distant.irradiance) * eval_phase(phase, wo, distant.direction) *
+               distant.map->transmittance(x);
     }
     return std::isfinite(sum) && sum > 0.0f ? sum : 0.0f;
 }

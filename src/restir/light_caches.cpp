@@ -29,6 +29,8 @@ struct Builder {
     LightCaches& out;
 
     void add_distant() const;
+    void add_spots() const;
+    void add_map(LightCaches::Distant distant) const;
     void add_environment() const;
     void add_local() const;
 };
@@ -38,24 +40,42 @@ void Builder::add_distant() const
     for (size_t i = 0; i < scene.lights.size(); ++i) {
         const auto* lamp = std::get_if<DistantLight>(&scene.lights[i]);
         if (!lamp || !(max_component(lamp->irradiance) > 0.0f)) continue;
-        LightCaches::Distant distant{static_cast<int>(i), lamp->direction, nullptr};
-        if (same_media) {
-            for (const LightCaches::Distant& old : previous->distant) {
-                if (old.direction == lamp->direction) distant.map = old.map;
-            }
+        add_map({static_cast<int>(i), -1, lamp->direction, lamp->irradiance, nullptr});
+    }
+}
+
+void Builder::add_map(LightCaches::Distant distant) const
+{
+    if (same_media) {
+        for (const LightCaches::Distant& old : previous->distant) {
+            if (old.direction == distant.direction) distant.map = old.map;
         }
-        distant.map ? ++out.reused : ++out.built;
-        if (!distant.map) {
-            distant.map = std::make_shared<TransmittanceMap>(scene.media, lamp->direction);
-        }
-        out.distant.push_back(std::move(distant));
+    }
+    distant.map ? ++out.reused : ++out.built;
+    if (!distant.map) {
+        distant.map = std::make_shared<TransmittanceMap>(scene.media, distant.direction);
+    }
+    out.distant.push_back(std::move(distant));
+}
+
+void Builder::add_spots() const
+{
+    for (size_t i = 0; i < out.parts->spots.size(); ++i) {
+        const EnvironmentSpot& spot = out.parts->spots[i];
+        add_map({-1, static_cast<int>(i), spot.direction, spot.irradiance, nullptr});
     }
 }
 
 void Builder::add_environment() const
 {
     if (!scene.environment || !(max_component(scene.environment->radiance) > 0.0f)) return;
-    out.environment_light = *scene.environment;
+    const bool same_light =
+        previous && previous->parts && is_same(previous->parts->whole, *scene.environment);
+    out.parts =
+        same_light
+            ? previous->parts
+            : std::make_shared<const EnvironmentParts>(split_environment(*scene.environment));
+    add_spots();
     DirectionTransmittanceParams params;
     if (sizes.pixel_passes < 100'000) {
         params.hats = {4, 8};
@@ -66,13 +86,12 @@ void Builder::add_environment() const
     if (!out.directions) {
         out.directions = std::make_shared<DirectionTransmittance>(scene.media, params);
     }
-    const bool same_light = previous && previous->environment &&
-                            is_same(previous->environment_light, *scene.environment) &&
-                            previous->environment_radiance.size() ==
-                                static_cast<size_t>(out.directions->hats().count());
-    out.environment_radiance = same_light
+    const bool same_radiance =
+        same_light && previous->environment_radiance.size() ==
+                          static_cast<size_t>(out.directions->hats().count());
+    out.environment_radiance = same_radiance
                                    ? previous->environment_radiance
-                                   : mean_radiance(*scene.environment, out.directions->hats());
+                                   : mean_radiance(out.parts->rest, out.directions->hats());
     out.environment.emplace(out.directions, out.environment_radiance, scene.media,
                             camera_position(scene.camera));
 }

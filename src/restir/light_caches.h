@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "restir/environment_cache.h"
+#include "restir/environment_spots.h"
 #include "restir/light_cells.h"
 #include "restir/local_light.h"
 #include "restir/media_key.h"
@@ -17,21 +18,24 @@ namespace mote {
 /// scene has such lights. Caches shape proposals, targets and control variates: wrong or stale
 /// values cost variance, never bias.
 struct LightCaches {
+    /// A distant light, or a spot of the environment.
     struct Distant {
-        int light = -1;  ///< into Scene::lights
+        int light = -1;  ///< into Scene::lights; -1: a spot
+        int spot = -1;   ///< into EnvironmentParts::spots; -1: a light
         Vec3 direction{0.0f};
+        Spectrum irradiance{0.0f};
         std::shared_ptr<const TransmittanceMap> map;
     };
     std::vector<Distant> distant;
-    std::optional<EnvironmentCache> environment;
-    std::optional<LightCells> cells;                      ///< of lamps and emissive volumes
+    std::shared_ptr<const EnvironmentParts> parts;  ///< of the scene's environment: not a guess
+    std::optional<EnvironmentCache> environment;    ///< of its rest, without spots
+    std::optional<LightCells> cells;                ///< of lamps and emissive volumes
     std::vector<std::optional<EmissiveBricks>> emissive;  ///< of each volume; empty: does not glow
 
     // What they were made from, to tell whether they may stay.
     MediaKey media;
     std::vector<LocalLight> local_lights;
     std::vector<Spectrum> environment_radiance;  ///< mean_radiance()
-    EnvironmentLight environment_light;
     std::shared_ptr<const DirectionTransmittance> directions;
     int built = 0;   ///< parts made for this frame
     int reused = 0;  ///< parts taken over from the frame before

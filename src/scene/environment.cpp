@@ -10,19 +10,6 @@
 namespace mote {
 namespace {
 
-/// Cosine of the polar angle at the upper edge of a row.
-float cos_row_edge(int row, int height)
-{
-    return static_cast<float>(std::cos(std::numbers::pi * row / height));
-}
-
-float pixel_solid_angle(int row, int width, int height)
-{
-    const double upper = std::cos(std::numbers::pi * row / height);
-    const double lower = std::cos(std::numbers::pi * (row + 1) / height);
-    return static_cast<float>(2.0 * std::numbers::pi / width * (upper - lower));
-}
-
 int wrap(int x, int width)
 {
     return x < 0 ? x + width : (x >= width ? x - width : x);
@@ -93,7 +80,7 @@ std::shared_ptr<const EnvironmentMap> make_environment_map(Buffer2D<Spectrum> pi
     std::vector<float> weights(pixels.size());
     size_t i = 0;
     for (int y = 0; y < pixels.height(); ++y) {
-        const float solid_angle = pixel_solid_angle(y, pixels.width(), pixels.height());
+        const float solid_angle = environment_pixel_size(y, pixels.width(), pixels.height());
         for (int x = 0; x < pixels.width(); ++x) {
             weights[i++] = mean_luminance(pixels, x, y) * solid_angle;
         }
@@ -132,15 +119,11 @@ std::optional<LightSample> sample_environment(const EnvironmentLight& light, Rng
     const int y = static_cast<int>(choice.index / static_cast<size_t>(width));
     // Uniform in solid angle inside the pixel.
     const Vec2 u = rng.uniform2();
-    const float upper = cos_row_edge(y, height);
-    const float cos_theta = upper + u.y * (cos_row_edge(y + 1, height) - upper);
-    const float sin_theta = std::sqrt(std::max(0.0f, 1.0f - cos_theta * cos_theta));
-    const float phi =
-        2.0f * pi * ((static_cast<float>(x) + u.x) / static_cast<float>(width) - 0.5f);
-    const Vec3 d(sin_theta * std::sin(phi), cos_theta, -sin_theta * std::cos(phi));
-    sample.wi = d * light.map_from_world;  // a rotation: its inverse is its transpose
-    sample.Li = light.radiance * bilinear(map.pixels, image_position(map, d));
-    sample.pdf_dir = choice.pmf / pixel_solid_angle(y, width, height);
+    const float upper = environment_row_edge(y, height);
+    const float cos_theta = upper + u.y * (environment_row_edge(y + 1, height) - upper);
+    sample.wi = environment_direction(light, static_cast<float>(x) + u.x, cos_theta);
+    sample.Li = environment_radiance(light, sample.wi);
+    sample.pdf_dir = choice.pmf / environment_pixel_size(y, width, height);
     return sample;
 }
 
@@ -157,7 +140,27 @@ float environment_pdf(const EnvironmentLight& light, Vec3 wi)
     const int y = std::clamp(static_cast<int>(position.y), 0, height - 1);
     const size_t index =
         static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
-    return map.table.pmf(index) / pixel_solid_angle(y, width, height);
+    return map.table.pmf(index) / environment_pixel_size(y, width, height);
+}
+
+float environment_row_edge(int row, int height)
+{
+    return static_cast<float>(std::cos(std::numbers::pi * row / height));
+}
+
+float environment_pixel_size(int row, int width, int height)
+{
+    const double upper = std::cos(std::numbers::pi * row / height);
+    const double lower = std::cos(std::numbers::pi * (row + 1) / height);
+    return static_cast<float>(2.0 * std::numbers::pi / width * (upper - lower));
+}
+
+Vec3 environment_direction(const EnvironmentLight& light, float column, float cos_theta)
+{
+    const float sin_theta = std::sqrt(std::max(0.0f, 1.0f - cos_theta * cos_theta));
+    const float phi = 2.0f * pi * (column / static_cast<float>(light.map->pixels.width()) - 0.5f);
+    const Vec3 d(sin_theta * std::sin(phi), cos_theta, -sin_theta * std::cos(phi));
+    return d * light.map_from_world;  // a rotation: its inverse is its transpose
 }
 
 float environment_fluence(const EnvironmentLight& light)

@@ -37,6 +37,17 @@ struct EnvironmentMap {
 /// Density [1/sr] of sample_environment.
 [[nodiscard]] float environment_pdf(const EnvironmentLight& light, Vec3 wi);
 
+/// World direction of a point of the image: column in pixels, [0, width], and the cosine of the
+/// angle from straight up.
+[[nodiscard]] Vec3 environment_direction(const EnvironmentLight& light, float column,
+                                         float cos_theta);
+
+/// Cosine of the angle from straight up at the upper edge of a row of pixels.
+[[nodiscard]] float environment_row_edge(int row, int height);
+
+/// Solid angle of a pixel of a row [sr].
+[[nodiscard]] float environment_pixel_size(int row, int width, int height);
+
 /// Integral of the luminance over all directions [W/m^2]; 0 for a black environment.
 [[nodiscard]] float environment_fluence(const EnvironmentLight& light);
 

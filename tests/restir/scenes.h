@@ -104,6 +104,30 @@ inline EnvironmentLight image_sky()
     return light;
 }
 
+/// A sky with two suns of a few pixels, one of them low on the image's seam.
+inline EnvironmentLight sunny_sky()
+{
+    Buffer2D<Spectrum> pixels(180, 90, Spectrum(0.0f));
+    const auto disk = [](float x, float y, float cx, float cy) {
+        return std::hypot(x - cx, y - cy) < 1.6f;
+    };
+    for (int y = 0; y < 90; ++y) {
+        for (int x = 0; x < 180; ++x) {
+            const auto fx = static_cast<float>(x);
+            const auto fy = static_cast<float>(y);
+            Spectrum& pixel = pixels.at(x, y);
+            pixel = {0.1f, 0.15f + 0.001f * fy, 0.4f - 0.003f * fy};
+            if (disk(fx, fy, 60.0f, 25.0f)) pixel = Spectrum(900.0f, 800.0f, 700.0f);
+            if (disk(fx, fy, x < 90 ? 0.0f : 180.0f, 40.0f)) pixel = Spectrum(90.0f, 30.0f, 10.0f);
+        }
+    }
+    EnvironmentLight light;
+    light.radiance = {1.0f, 0.9f, 0.8f};
+    light.map = make_environment_map(pixels, "sky with two suns");
+    light.map_from_world = Mat3(glm::mat3_cast(glm::angleAxis(0.4f, Vec3(0.0f, 1.0f, 0.0f))));
+    return light;
+}
+
 inline Scene lit_clumps(float density_scale)
 {
     Scene scene;
@@ -118,6 +142,13 @@ inline TestScene sun_and_sky(float density_scale = 6.0f)
                   lit_clumps(density_scale)};
     out.scene.lights = {sun()};
     out.scene.environment = even_sky();
+    return out;
+}
+
+inline TestScene suns_in_the_image()
+{
+    TestScene out{"suns in the environment image", lit_clumps(6.0f)};
+    out.scene.environment = sunny_sky();
     return out;
 }
 
@@ -295,12 +326,12 @@ inline TestScene everything_at_once()
 
 inline std::vector<TestScene> all_scenes()
 {
-    return {sun_and_sky(0.1f), sun_and_sky(6.0f),   sun_and_sky(100.0f),
-            two_suns(),        sky_with_a_sun(),    camera_inside(),
-            overlapping(),     colour_grid(),       anisotropic(-0.9f),
-            anisotropic(0.0f), anisotropic(0.95f),  spheres_in_smoke(),
-            quads(),           flame_in_smoke(),    moving_through_a_lens(),
-            many_lamps(),      everything_at_once()};
+    return {sun_and_sky(0.1f), sun_and_sky(6.0f),    sun_and_sky(100.0f),
+            two_suns(),        sky_with_a_sun(),     camera_inside(),
+            overlapping(),     colour_grid(),        anisotropic(-0.9f),
+            anisotropic(0.0f), anisotropic(0.95f),   spheres_in_smoke(),
+            quads(),           flame_in_smoke(),     moving_through_a_lens(),
+            many_lamps(),      everything_at_once(), suns_in_the_image()};
 }
 
 }  // namespace mote::test
