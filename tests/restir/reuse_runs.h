@@ -127,6 +127,7 @@ struct ReuseRuns {
     render.height = scene.camera.height;
     render.samples = samples;
     render.path.transmittance = TransmittanceKind::Exact;
+    render.path.equiangular = true;  // lamps stand in smoke
     const OutputDescription output = direct_light_output();
     for (int run = 0; run < count.runs; ++run) {
         render.seed = count.first_seed + static_cast<uint32_t>(run);
