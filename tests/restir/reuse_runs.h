@@ -106,13 +106,16 @@ struct ReuseRuns {
                 direct_light_only(render_frame(frames[i], render, output, history, nullptr, stats));
             EXPECT_EQ(stats.dropped_non_finite, 0);
         }
-        render.restir.reuse = ReuseMode::Off;
-        FrameHistory none;
-        none.impl().caches = caches.back();
-        const LayeredImage plain =
-            direct_light_only(render_frame(frames.back(), render, output, none, nullptr, stats));
-        add_run(out.added, difference_of(image, plain));
         add_run(out.images, image);
+        LayeredImage plain = image;
+        if (restir.reuse != ReuseMode::Off) {
+            render.restir.reuse = ReuseMode::Off;
+            FrameHistory none;
+            none.impl().caches = caches.back();
+            plain = direct_light_only(
+                render_frame(frames.back(), render, output, none, nullptr, stats));
+        }
+        add_run(out.added, difference_of(std::move(image), plain));
     }
     return out;
 }
