@@ -98,11 +98,11 @@ void expect_no_bias(const BiasCase& each, const Sharpness& sharpness)
 /// Light at infinity by its closed form and by reuse; reuse of a lamp beside it, with the sharpest
 /// phase functions; thick smoke.
 const BiasCase cases[] = {
-    {{"sun and sky", test::sun_and_sky_frames}, ReuseMode::Off, 700, 20},
-    {{"reused sky", test::sun_and_sky_frames, false}, ReuseMode::Temporal, 750, 130, 600},
+    {{"sun and sky", test::sun_and_sky_frames}, ReuseMode::Off, 850, 20},
+    {{"reused sky", test::sun_and_sky_frames, false}, ReuseMode::Temporal, 1050, 150, 700},
     {{"backward", test::backward_frames}, ReuseMode::Both, 650, 20, 40},
     {{"forward", test::forward_frames}, ReuseMode::Both, 1000, 45, 40},
-    {{"thick", test::thick_frames}, ReuseMode::Temporal, 1100, 180, 700},
+    {{"thick", test::thick_frames}, ReuseMode::Temporal, 1200, 180, 700},
 };
 
 class OverallBiasStat : public testing::TestWithParam<BiasCase> {};
