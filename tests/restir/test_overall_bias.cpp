@@ -99,7 +99,7 @@ void expect_no_bias(const BiasCase& each, const Sharpness& sharpness)
 /// phase functions; thick smoke.
 const BiasCase cases[] = {
     {{"sun and sky", test::sun_and_sky_frames}, ReuseMode::Off, 850, 20},
-    {{"reused sky", test::sun_and_sky_frames, false}, ReuseMode::Temporal, 1050, 150, 700},
+    {{"reused sky", test::sun_and_sky_frames, false}, ReuseMode::Temporal, 1300, 200, 900},
     {{"backward", test::backward_frames}, ReuseMode::Both, 650, 20, 40},
     {{"forward", test::forward_frames}, ReuseMode::Both, 1000, 45, 40},
     {{"thick", test::thick_frames}, ReuseMode::Temporal, 1200, 180, 700},
