@@ -112,6 +112,7 @@ void take_pieces(const BrickGrid& grid, Workspace& work, WalkCounts& counts)
         counts.cells += static_cast<uint64_t>(found.cells[i]);
     }
     counts.bricks += found.count;
+    counts.uniform_bricks += found.count - count;
     work.piece_count = count;
 }
 

@@ -18,9 +18,10 @@ struct DepthQuery {
 
 /// What walks have cost so far.
 struct WalkCounts {
-    uint64_t rays = 0;    ///< times volumes that they meet
-    uint64_t bricks = 0;  ///< pieces of rays through bricks; those of one value take no cells
-    uint64_t cells = 0;   ///< pieces integrated in closed form
+    uint64_t rays = 0;            ///< times volumes that they meet
+    uint64_t bricks = 0;          ///< pieces of rays through bricks
+    uint64_t uniform_bricks = 0;  ///< those among them of one value: closed form, no cells
+    uint64_t cells = 0;           ///< pieces integrated in closed form
 };
 
 /// tau[i] = optical depth of queries[i] through all media, exact up to float rounding; where it

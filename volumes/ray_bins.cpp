@@ -66,6 +66,7 @@ void bin_one(const Volume& volume, const Ray& ray, float cut, RayBins& bins, Bin
     float end = 0.0f;  // of the last stretch that was added
     bool started = false;
     int64_t cells = 0;
+    int64_t uniform_bricks = 0;
     // A stretch that holds something; what lies before it is a gap if it does not join on.
     const auto open_at = [&](float s) {
         if (!started) {
@@ -80,6 +81,7 @@ void bin_one(const Volume& volume, const Ray& ray, float cut, RayBins& bins, Bin
     for_each_brick(grid, local, [&](const BrickSpan& span) {
         const BrickRange& range = grid.ranges[static_cast<size_t>(span.brick)];
         if (range.min == range.max) {
+            ++uniform_bricks;
             if (!(range.max > 0.0f)) return true;
             open_at(span.s0);
             const float sigma_t = scale * range.max;
@@ -112,6 +114,7 @@ void bin_one(const Volume& volume, const Ray& ray, float cut, RayBins& bins, Bin
     });
     if (started && out.cells_in_bin > 0) out.close(end, tau);
     counts.cells += cells;
+    counts.uniform_bricks += uniform_bricks;
     ++counts.rays;
     counts.bins += bins.count;
 }
@@ -276,11 +279,13 @@ float invert_all(const MediaStretch& stretch, float s0, float s1, float whole, f
 void make_ray_bins(const Media& media, const Ray& ray, float cut, RayBins& bins, BinCounts& counts)
 {
     bins.count = 0;
+    const int64_t met = counts.rays;
     if (const Volume* volume = single_volume(media)) {
         if (!is_void(*volume)) bin_one(*volume, ray, cut, bins, counts);
-        return;
+    } else {
+        bin_all(media, ray, cut, bins, counts);
     }
-    bin_all(media, ray, cut, bins, counts);
+    counts.misses += counts.rays == met ? 1 : 0;
 }
 
 float invert_bin(const Media& media, const Ray& ray, const RayBins& bins, int k, float tau)

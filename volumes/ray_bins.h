@@ -31,8 +31,10 @@ struct RayBins {
 
 /// Counts of a walk, for statistics.
 struct BinCounts {
-    int64_t rays = 0;   ///< that met a medium
-    int64_t cells = 0;  ///< walked, bricks of one value apart
+    int64_t rays = 0;            ///< times media whose bounds they meet
+    int64_t misses = 0;          ///< rays that meet no bounds: nothing is walked
+    int64_t uniform_bricks = 0;  ///< bricks of one value, crossed in closed form without cells
+    int64_t cells = 0;           ///< walked in all other bricks
     int64_t bins = 0;
 };
 

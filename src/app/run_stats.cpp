@@ -20,6 +20,27 @@ double seconds_of(clockid_t clock)
     return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
+/// Work of the ReSTIR estimator: what a scene does not need shows as 0.
+Json restir_json(const FrameStats& stats)
+{
+    return {{"cache_cpu_s", stats.cache_cpu_seconds},
+            {"caches_built", stats.caches_built},
+            {"caches_reused", stats.caches_reused},
+            {"transmittance_maps", stats.caches.transmittance_maps},
+            {"direction_sets", stats.caches.direction_sets},
+            {"local_lights", stats.caches.local_lights},
+            {"light_cells", stats.caches.light_cells},
+            {"camera_rays", stats.camera_rays},
+            {"missed_rays", stats.missed_rays},
+            {"light_rays", stats.light_rays},
+            {"cells", stats.cells},
+            {"uniform_bricks", stats.uniform_bricks},
+            {"candidates", stats.candidates},
+            {"emission_integrals", stats.emission_integrals},
+            {"histories_used", stats.histories_used},
+            {"neighbours_used", stats.neighbours_used}};
+}
+
 Json to_json(const FrameRecord& r)
 {
     Json j{{"frame", r.frame}, {"file", r.file}, {"skipped", r.skipped}, {"reason", r.reason}};
@@ -44,17 +65,7 @@ Json to_json(const FrameRecord& r)
     j["paths"] = r.render.paths;
     j["dropped_non_finite"] = r.render.dropped_non_finite;
     j["truncated_paths"] = r.render.truncated_paths;
-    if (r.render.camera_rays > 0 || r.render.caches_built + r.render.caches_reused > 0) {
-        j["restir"] = {{"cache_cpu_s", r.render.cache_cpu_seconds},
-                       {"caches_built", r.render.caches_built},
-                       {"caches_reused", r.render.caches_reused},
-                       {"camera_rays", r.render.camera_rays},
-                       {"light_rays", r.render.light_rays},
-                       {"cells", r.render.cells},
-                       {"candidates", r.render.candidates},
-                       {"histories_used", r.render.histories_used},
-                       {"neighbours_used", r.render.neighbours_used}};
-    }
+    if (r.render.camera_rays + r.render.missed_rays > 0) j["restir"] = restir_json(r.render);
     j["peak_memory_bytes"] = r.peak_memory;
     return j;
 }

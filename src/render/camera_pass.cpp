@@ -113,14 +113,18 @@ Spectrum trace_indirect(const PassInputs& inputs, const PixelDomain& domain, Rng
 void PassCounts::add(const PassCounts& other)
 {
     bins.rays += other.bins.rays;
+    bins.misses += other.bins.misses;
+    bins.uniform_bricks += other.bins.uniform_bricks;
     bins.cells += other.bins.cells;
     bins.bins += other.bins.bins;
     light_rays.rays += other.light_rays.rays;
     light_rays.bricks += other.light_rays.bricks;
+    light_rays.uniform_bricks += other.light_rays.uniform_bricks;
     light_rays.cells += other.light_rays.cells;
     reuse.histories += other.reuse.histories;
     reuse.neighbours += other.reuse.neighbours;
     candidates += other.candidates;
+    emission_integrals += other.emission_integrals;
     truncated += other.truncated;
 }
 
@@ -163,6 +167,7 @@ void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray, in
     if (frame.has_emission) {
         Rng rng = pass_rng(inputs, key, Stream::Shade);
         sample.emission = emission_along(frame, domain, rng);
+        ++counts.emission_integrals;
     }
     if (domain.bins.empty() && !inputs.aovs.needs_motion()) return;
     if (inputs.aovs.needs_first_collision()) {

@@ -35,7 +35,8 @@ struct PassCounts {
     WalkCounts light_rays;
     ReuseCounts reuse;
     int64_t candidates = 0;
-    int64_t truncated = 0;  ///< passes whose light could have scattered on
+    int64_t emission_integrals = 0;  ///< along camera rays, over all media that glow
+    int64_t truncated = 0;           ///< passes whose light could have scattered on
 
     void add(const PassCounts& other);
 };

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "image/layers.h"
+#include "restir/cache_stats.h"
 #include "scene/description.h"
 #include "scene/scene.h"
 
@@ -18,13 +19,17 @@ struct FrameStats {
     int64_t truncated_paths = 0;     ///< cut by max_bounces though they could have gone on
     double cache_cpu_seconds = 0.0;  ///< building light caches, part of render_cpu_seconds
     int64_t camera_rays = 0;         ///< tabulated by the ReSTIR estimator: those that met smoke
+    int64_t missed_rays = 0;         ///< camera rays that met no medium's bounds: nothing is walked
     int64_t light_rays = 0;          ///< traced exactly towards lights
     int64_t cells = 0;               ///< walked by both
+    int64_t uniform_bricks = 0;      ///< crossed by both in closed form, without cells
     int64_t candidates = 0;
-    int64_t histories_used = 0;   ///< pixels and passes that had a history with confidence
-    int64_t neighbours_used = 0;  ///< reservoirs of neighbours that took part
-    int caches_built = 0;         ///< light caches made for this frame
-    int caches_reused = 0;        ///< taken over from the frame before
+    int64_t emission_integrals = 0;  ///< along camera rays; 0 if nothing glows
+    int64_t histories_used = 0;      ///< pixels and passes that had a history with confidence
+    int64_t neighbours_used = 0;     ///< reservoirs of neighbours that took part
+    int caches_built = 0;            ///< light caches made for this frame
+    int caches_reused = 0;           ///< taken over from the frame before
+    CacheParts caches;               ///< what they are of
 };
 
 /// Asked by several threads, at every pixel and every few samples, so it must be cheap; true

@@ -106,13 +106,18 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
     history.last = keeps_history ? domain : FrameDomain{};
     stats.truncated_paths = counts.truncated;
     stats.camera_rays = counts.bins.rays;
+    stats.missed_rays = counts.bins.misses;
     stats.light_rays = static_cast<int64_t>(counts.light_rays.rays);
     stats.cells = counts.bins.cells + static_cast<int64_t>(counts.light_rays.cells);
+    stats.uniform_bricks =
+        counts.bins.uniform_bricks + static_cast<int64_t>(counts.light_rays.uniform_bricks);
     stats.candidates = counts.candidates;
+    stats.emission_integrals = counts.emission_integrals;
     stats.histories_used = counts.reuse.histories;
     stats.neighbours_used = counts.reuse.neighbours;
     stats.caches_built = history.caches->built;
     stats.caches_reused = history.caches->reused;
+    stats.caches = parts_of(*history.caches);
     return finished;
 }
 

@@ -12,6 +12,14 @@ struct CacheStats {
     int64_t bytes = 0;         ///< that stay in memory
 };
 
+/// How much of each kind of light cache a frame has: 0 for lights that the scene lacks.
+struct CacheParts {
+    int transmittance_maps = 0;  ///< one per distant light
+    int direction_sets = 0;      ///< 1 with an environment
+    int64_t local_lights = 0;    ///< lamps and glowing media that candidates choose among
+    int64_t light_cells = 0;     ///< cells with a distribution over them
+};
+
 /// CPU time that the process has used so far, all threads [s].
 [[nodiscard]] double process_cpu_seconds();
 

@@ -144,4 +144,14 @@ std::shared_ptr<const LightCaches> make_light_caches(
     return out;
 }
 
+CacheParts parts_of(const LightCaches& caches)
+{
+    CacheParts parts;
+    parts.transmittance_maps = static_cast<int>(caches.distant.size());
+    parts.direction_sets = caches.directions ? 1 : 0;
+    parts.local_lights = static_cast<int64_t>(caches.local_lights.size());
+    if (caches.cells) parts.light_cells = static_cast<int64_t>(caches.cells->cell_count());
+    return parts;
+}
+
 }  // namespace mote

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "restir/cache_stats.h"
 #include "restir/environment_cache.h"
 #include "restir/environment_spots.h"
 #include "restir/light_cells.h"
@@ -53,5 +54,8 @@ struct CacheSizes {
 [[nodiscard]] std::shared_ptr<const LightCaches> make_light_caches(
     const Scene& scene, const CacheSizes& sizes,
     const std::shared_ptr<const LightCaches>& previous);
+
+/// What `caches` are of.
+[[nodiscard]] CacheParts parts_of(const LightCaches& caches);
 
 }  // namespace mote

@@ -61,7 +61,8 @@ void describe(FieldVisitor& v, RestirParams& restir)
     visit(v,
           {.key = "corrections",
            .doc = "false: distant lights and the environment by closed form alone, without noise "
-                  "and fast, but biased by the light caches' coarseness (a few percent)"},
+                  "and fast, but biased by the light caches' coarseness (measured: 1 % on a plume "
+                  "of optical depth 8, 10 % at 40, more in smoke of a few voxels)"},
           restir.corrections);
     visit_choice(v,
                  {.key = "shift",
@@ -70,8 +71,8 @@ void describe(FieldVisitor& v, RestirParams& restir)
                  restir.shift, shift_names);
     visit_choice(v,
                  {.key = "mis",
-                  .doc = "Weights between reservoirs; constant is biased where smoke does not "
-                         "overlap: for study"},
+                  .doc = "Weights between reservoirs; between neighbours balance is pairwise; "
+                         "constant is biased where smoke does not overlap: for study"},
                  restir.mis, mis_names);
     visit_choice(
         v,

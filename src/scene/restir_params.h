@@ -22,7 +22,8 @@ enum class ShiftKind {
 enum class ReuseMis {
     Auto,      ///< Balance for one input where nothing moved, Pairwise otherwise
     Pairwise,  ///< defensive pairwise: linear in the inputs, bounded in motion
-    Balance,   ///< generalised balance heuristic: quadratic in the inputs
+    Balance,   ///< generalised balance heuristic in time; between neighbours, where it would be
+               ///< quadratic in their number, as Pairwise
     Constant,  ///< confidence alone; biased where supports differ: for study
 };
 

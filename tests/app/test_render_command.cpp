@@ -75,6 +75,23 @@ TEST_F(RenderCommand, WritesImagesPreviewsAndStats)
     EXPECT_GT(stats["frames"][0]["peak_memory_bytes"], 1'000'000);
 }
 
+/// What a scene lacks shows as 0 work.
+TEST_F(RenderCommand, StatsTellTheWorkOfTheRestirEstimator)
+{
+    const Finished run = render({"--frames", "1", "--set", "render.estimator=restir", "--stats",
+                                 "s.json", "--resolution", "20x10", "--samples", "3"});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const auto stats = nlohmann::json::parse(read_bytes(folder.file("s.json")));
+    const auto& work = stats["frames"][0]["restir"];
+    EXPECT_EQ(work["camera_rays"].get<int>() + work["missed_rays"].get<int>(), 20 * 10 * 3);
+    EXPECT_EQ(work["caches_built"], 1);
+    EXPECT_EQ(work["emission_integrals"], 0);
+    for (const char* key : {"caches_reused", "transmittance_maps", "direction_sets", "local_lights",
+                            "light_cells", "light_rays", "cells", "uniform_bricks", "candidates"}) {
+        EXPECT_TRUE(work.contains(key)) << key;
+    }
+}
+
 TEST_F(RenderCommand, AovsCanBeReplacedAndWrongOnesAreRefused)
 {
     ASSERT_EQ(render({"--frames", "1", "--aovs", "none"}).exit_code, 0);

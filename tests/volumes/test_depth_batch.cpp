@@ -236,6 +236,7 @@ TEST(DepthBatch, BricksOfOneValueTakeNoCells)
     EXPECT_EQ(counts.rays, queries.size());
     EXPECT_GT(counts.bricks, queries.size());
     EXPECT_EQ(counts.cells, 0u);
+    EXPECT_EQ(counts.uniform_bricks, counts.bricks);
     for (size_t i = 0; i < queries.size(); ++i) EXPECT_NEAR(tau[i], 5.0f * queries[i].t1, 1e-5f);
 }
 

@@ -1,0 +1,110 @@
+#include <gtest/gtest.h>
+
+#include "support/scene_files.h"
+
+namespace mote {
+namespace {
+
+RestirParams preset(const std::string& name, const std::string& more = "",
+                    const std::vector<std::string>& overrides = {})
+{
+    return test::load_text("[render.restir]\npreset = \"" + name + "\"\n" + more, overrides)
+        .render.restir;
+}
+
+void expect_same(const RestirParams& a, const RestirParams& b)
+{
+    EXPECT_EQ(a.reuse, b.reuse);
+    EXPECT_EQ(a.candidates, b.candidates);
+    EXPECT_EQ(a.control_variate, b.control_variate);
+    EXPECT_EQ(a.distant_rays, b.distant_rays);
+    EXPECT_EQ(a.environment_rays, b.environment_rays);
+    EXPECT_EQ(a.indirect_paths, b.indirect_paths);
+    EXPECT_EQ(a.corrections, b.corrections);
+    EXPECT_EQ(a.shift, b.shift);
+    EXPECT_EQ(a.mis, b.mis);
+    EXPECT_EQ(a.visibility, b.visibility);
+    EXPECT_EQ(a.temporal.cap, b.temporal.cap);
+    EXPECT_EQ(a.temporal.validation, b.temporal.validation);
+    EXPECT_EQ(a.spatial.neighbours, b.spatial.neighbours);
+    EXPECT_EQ(a.spatial.radius_px, b.spatial.radius_px);
+    EXPECT_EQ(a.spatial.feedback, b.spatial.feedback);
+}
+
+TEST(RestirPresets, DefaultIsWhatASceneWithoutOneHas)
+{
+    expect_same(preset("default"), test::load_text("").render.restir);
+    expect_same(preset("default"), {});
+}
+
+/// 4 candidates, cached target, cap 20, 5 neighbours, everything among the candidates.
+TEST(RestirPresets, TextbookIsThePapersConfiguration)
+{
+    RestirParams expected;
+    expected.reuse = ReuseMode::Both;
+    expected.candidates = 4;
+    expected.control_variate = false;
+    expected.shift = ShiftKind::World;
+    expected.visibility = TargetVisibility::Cached;
+    expected.temporal.cap = 20.0f;
+    expected.temporal.validation = 0.0f;
+    expected.spatial.neighbours = 5;
+    expected.spatial.radius_px = 10.0f;
+    expected.spatial.feedback = true;
+    const RestirParams textbook = preset("textbook");
+    EXPECT_EQ(textbook.preset, RestirPreset::Textbook);
+    expect_same(textbook, expected);
+}
+
+TEST(RestirPresets, PreviewLeavesOutCorrectionsAlone)
+{
+    RestirParams expected;
+    expected.corrections = false;
+    const RestirParams preview = preset("preview");
+    EXPECT_EQ(preview.preset, RestirPreset::Preview);
+    expect_same(preview, expected);
+}
+
+TEST(RestirPresets, BiasedOnesDifferInOneThing)
+{
+    RestirParams expected;
+    expected.reuse = ReuseMode::Both;
+    expected.candidates = 4;
+    expected.visibility = TargetVisibility::None;
+    EXPECT_EQ(preset("biased-no-visibility").preset, RestirPreset::BiasedNoVisibility);
+    expect_same(preset("biased-no-visibility"), expected);
+
+    expected.visibility = TargetVisibility::Exact;
+    expected.shift = ShiftKind::World;
+    expected.mis = ReuseMis::Constant;
+    EXPECT_EQ(preset("biased-constant-mis").preset, RestirPreset::BiasedConstantMis);
+    expect_same(preset("biased-constant-mis"), expected);
+}
+
+TEST(RestirPresets, KeysGivenBesidesWin)
+{
+    RestirParams expected = make_restir_params(RestirPreset::Textbook);
+    expected.candidates = 9;
+    expected.temporal.cap = 5.0f;
+    const std::string more = "candidates = 9\ntemporal = { cap = 5 }\n";
+    expect_same(preset("textbook", more), expected);
+
+    // On the command line as well, whatever the order.
+    expected.mis = ReuseMis::Balance;
+    expect_same(
+        preset("default", more, {"render.restir.mis=balance", "render.restir.preset=textbook"}),
+        expected);
+}
+
+TEST(RestirPresets, UnknownOnesAreNamedWithThoseThereAre)
+{
+    const std::string problems = test::problems_of("[render.restir]\npreset = \"textbok\"\n");
+    EXPECT_NE(problems.find("scene.toml:2:"), std::string::npos) << problems;
+    for (const char* name :
+         {"default", "textbook", "preview", "biased-no-visibility", "biased-constant-mis"}) {
+        EXPECT_NE(problems.find(name), std::string::npos) << problems;
+    }
+}
+
+}  // namespace
+}  // namespace mote
