@@ -145,6 +145,17 @@ Ray camera_ray(const PassInputs& inputs, const PassKey& key)
     return generate_ray(camera, film, lens, moves ? pair(numbers, NumberPair::Time).x : 0.0f);
 }
 
+std::optional<FilmSample> uniform_tile(const PassInputs& inputs, const Tile& tile)
+{
+    const Scene& scene = *inputs.domain.scene;
+    const bool varies = (scene.environment && scene.environment->map) ||
+                        inputs.lights.has_surfaces() || inputs.aovs.needs_motion();
+    if (varies || media_in_view(scene, tile)) return std::nullopt;
+    FilmSample sample;
+    if (scene.environment) sample.background = scene.environment->radiance;
+    return sample;
+}
+
 void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray, int owner,
                 PixelDomain& domain, LightRays& rays, FilmSample& sample, PassCounts& counts)
 {

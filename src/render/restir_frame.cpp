@@ -128,10 +128,12 @@ bool render_independent_passes(const PassInputs& inputs, const FrameControl& con
     std::atomic<bool> stopped{false};
     std::mutex mutex;
     const Camera& camera = inputs.domain.scene->camera;
+    const auto passes = static_cast<size_t>(inputs.render.samples);
     for_each_tile(camera.width, camera.height, [&](const Tile& tile) {
         const auto pixels = static_cast<size_t>((tile.x1 - tile.x0) * (tile.y1 - tile.y0));
         TileScratch scratch;
-        scratch.samples.resize(pixels);
+        const std::optional<FilmSample> uniform = uniform_tile(inputs, tile);
+        scratch.samples.resize(pixels, uniform.value_or(FilmSample{}));
         scratch.pixels.resize(pixels);
         const auto for_pixels = [&](auto&& f) {
             size_t i = 0;
@@ -147,7 +149,9 @@ bool render_independent_passes(const PassInputs& inputs, const FrameControl& con
         for (int pass = 0; pass < inputs.render.samples; ++pass) {
             if (control.stop && control.stop()) stopped.store(true, std::memory_order_relaxed);
             if (stopped.load(std::memory_order_relaxed)) return;
-            trace_tile_pass(inputs, tile, static_cast<uint32_t>(pass), scratch, tile_counts);
+            if (!uniform) {
+                trace_tile_pass(inputs, tile, static_cast<uint32_t>(pass), scratch, tile_counts);
+            }
             for (size_t i = 0; i < pixels; ++i) {
                 tile_dropped += scratch.pixels[i].add(scratch.samples[i]) ? 0 : 1;
             }
@@ -156,6 +160,7 @@ bool render_independent_passes(const PassInputs& inputs, const FrameControl& con
         if (accumulated) {
             for_pixels([&](int x, int y, const PixelFilm& p) { accumulated->at(x, y) = p; });
         }
+        if (uniform) tile_counts.bins.misses += static_cast<int64_t>(pixels * passes);
         {
             const std::lock_guard<std::mutex> lock(mutex);
             counts.add(tile_counts);

@@ -3,9 +3,25 @@
 namespace mote {
 namespace {
 
-/// Whether all corners of a box, in camera space, are on the outer side of one plane of the view
-/// pyramid. `slope`: tangents of the half angles, widened against rounding.
-bool is_outside(const Bounds3& box, const Trs& camera, glm::dvec2 slope)
+/// Tangents of the angles off the view axis between which rays lie, to the right and upwards.
+struct ViewRange {
+    glm::dvec2 lo;
+    glm::dvec2 hi;
+};
+
+/// Of a range of pixels, a hair wider against rounding.
+ViewRange view_range(const Camera& camera, const Tile& tile)
+{
+    const double per_pixel = 2.0 * static_cast<double>(camera.tan_half_fov_y) / camera.height;
+    const double margin = 1e-3 * camera.height;
+    const auto right = [&](double x) { return (x - 0.5 * camera.width) * per_pixel; };
+    const auto up = [&](double y) { return (0.5 * camera.height - y) * per_pixel; };
+    return {{right(tile.x0 - margin), up(tile.y1 + margin)},
+            {right(tile.x1 + margin), up(tile.y0 - margin)}};
+}
+
+/// Whether all corners of a box are on the outer side of one plane of the pyramid of rays.
+bool is_outside(const Bounds3& box, const Trs& camera, const ViewRange& range)
 {
     bool outside[5] = {true, true, true, true, true};
     for (int corner = 0; corner < 8; ++corner) {
@@ -14,10 +30,10 @@ bool is_outside(const Bounds3& box, const Trs& camera, glm::dvec2 slope)
                       (corner & 4) != 0 ? box.hi.z : box.lo.z);
         const Vec3d q = glm::conjugate(camera.rotate) * (p - camera.translate);
         outside[0] &= q.z > 0.0;
-        outside[1] &= q.x > -slope.x * q.z;
-        outside[2] &= q.x < slope.x * q.z;
-        outside[3] &= q.y > -slope.y * q.z;
-        outside[4] &= q.y < slope.y * q.z;
+        outside[1] &= q.x > -range.hi.x * q.z;
+        outside[2] &= q.x < -range.lo.x * q.z;
+        outside[3] &= q.y > -range.hi.y * q.z;
+        outside[4] &= q.y < -range.lo.y * q.z;
     }
     return outside[0] || outside[1] || outside[2] || outside[3] || outside[4];
 }
@@ -26,14 +42,18 @@ bool is_outside(const Bounds3& box, const Trs& camera, glm::dvec2 slope)
 
 bool media_in_view(const Scene& scene)
 {
+    return media_in_view(scene, {0, 0, scene.camera.width, scene.camera.height});
+}
+
+bool media_in_view(const Scene& scene, const Tile& tile)
+{
     const Camera& camera = scene.camera;
     if (camera.lens_radius > 0.0f || camera.world_from_camera.is_moving()) return true;
-    const double half_height = 1.001 * static_cast<double>(camera.tan_half_fov_y);
-    const glm::dvec2 slope(half_height * camera.width / camera.height, half_height);
+    const ViewRange range = view_range(camera, tile);
     const Trs place = camera.world_from_camera.at(0.0f);
     for (const Volume& volume : scene.media.volumes) {
         const Bounds3 box = world_bounds(volume);
-        if (!box.is_empty() && !is_outside(box, place, slope)) return true;
+        if (!box.is_empty() && !is_outside(box, place, range)) return true;
     }
     return false;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/parallel.h"
 #include "scene/scene.h"
 
 namespace mote {
@@ -8,5 +9,8 @@ namespace mote {
 /// pyramid. Conservative: always true for open lenses and for cameras that move while the shutter
 /// is open. What no ray can meet needs no light caches.
 [[nodiscard]] bool media_in_view(const Scene& scene);
+
+/// The same for the pixels of a tile.
+[[nodiscard]] bool media_in_view(const Scene& scene, const Tile& tile);
 
 }  // namespace mote

@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "core/parallel.h"
+#include "render/camera_pass.h"
 #include "restir/media_in_view.h"
 #include "restir/runs.h"
 #include "scene/aov_names.h"
@@ -345,6 +346,41 @@ TEST(RestirFrame, AutoAddsUpSinglePassesOfASceneAtRest)
     starts_anew("an albedo");
     test.scene.camera.width += 2;
     starts_anew("the size");
+}
+
+/// Tiles that show one background are not traced, and look as if they were.
+TEST(RestirFrame, UniformTilesAreThoseThatSeeNoMedium)
+{
+    TestScene test = test::sun_and_sky();
+    test.scene.camera.width = 160;
+    test.scene.camera.height = 90;
+    test.scene.camera.tan_half_fov_y *= 4.0f;
+    const auto lights = build_light_sampler(test.scene, {});
+    RenderDescription description = render_of(test, 1);
+    const FrameDomain domain =
+        make_frame_domain({std::shared_ptr<const Scene>(), &test.scene},
+                          make_light_caches(test.scene, {1000}, nullptr), description.restir);
+    const PassInputs inputs{domain, description, {}, lights};
+    int uniform = 0;
+    for (int y = 0; y + 10 <= 90; y += 10) {
+        for (int x = 0; x + 10 <= 160; x += 10) {
+            const auto sample = uniform_tile(inputs, {x, y, x + 10, y + 10});
+            if (!sample) continue;
+            ++uniform;
+            EXPECT_EQ(sample->background, test.scene.environment->radiance);
+            for (int i = 0; i < 100; ++i) {
+                PixelDomain pixel;
+                BinCounts counts;
+                const PassKey key{x + i % 10, y + i / 10, 0};
+                make_pixel_domain(domain, camera_ray(inputs, key), pixel, counts);
+                EXPECT_TRUE(pixel.bins.empty());
+            }
+        }
+    }
+    EXPECT_GT(uniform, 80);   // of 144
+    EXPECT_LT(uniform, 140);  // the middle is smoke
+    test.scene.environment = test::image_sky();
+    EXPECT_FALSE(uniform_tile(inputs, {0, 0, 10, 10}));
 }
 
 /// Media out of view cost no caches; whatever a camera ray can meet is in view.
