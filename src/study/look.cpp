@@ -7,25 +7,21 @@
 
 #include "core/error.h"
 #include "core/math.h"
-#include "verify/compare_images.h"
+#include "study/tile_judge.h"
 
 namespace mote {
 
 namespace {
 
 constexpr double look_growth = 1.5;
+/// Of the tile budget: differences that no single tile is accused of.
+constexpr double negligible_share = 0.01;
 constexpr const char* color_names[] = {"R", "G", "B"};
 
 /// Significance of each of `count` tests so that together they have this one (Sidak 1967).
 double sidak_significance(double significance, int64_t count)
 {
     return -std::expm1(std::log1p(-significance) / static_cast<double>(count));
-}
-
-bool is_radiance(const std::string& channel)
-{
-    const std::string layer = layer_of(channel);
-    return layer != "alpha" && layer != "transmittance";
 }
 
 /// Whether there is anything to compare: neither set ever differed from 0.
@@ -52,11 +48,14 @@ ChannelBias bias_of(const ChannelComparison& channel, double scale, const Questi
     return bias;
 }
 
-/// Smallest detectable bias of the tile whose error is the median.
+/// Smallest detectable bias of the tile whose error is the median, among those that vary.
 double typical_tile_detectable(const ChannelComparison& channel, double significance, double power)
 {
     std::vector<MeanEstimate> tiles;
-    for (const TestResult& tile : channel.tiles) tiles.push_back(tile.difference);
+    for (const TestResult& tile : channel.tiles) {
+        if (tile.difference.variance > 0.0) tiles.push_back(tile.difference);
+    }
+    if (tiles.empty()) return 0.0;
     const auto middle = tiles.begin() + static_cast<std::ptrdiff_t>(tiles.size() / 2);
     std::nth_element(
         tiles.begin(), middle, tiles.end(),
@@ -129,18 +128,6 @@ int runs_of_look(int first_look, int k)
     return static_cast<int>(std::lround(first_look * std::pow(look_growth, k - 1)));
 }
 
-double channel_scale(const TileStats& reference, const std::string& channel)
-{
-    const auto mean_of = [&](const std::string& name) {
-        const TileStats::ChannelStats* stats = reference.find(name);
-        return stats == nullptr ? 0.0 : std::abs(stats->whole_image.mean);
-    };
-    if (!is_radiance(channel)) return mean_of(channel);
-    double picture = 0.0;
-    for (const char* color : color_names) picture += mean_of(color) / 3.0;
-    return picture;
-}
-
 Look judge(const TileStats& tested, const TileStats& reference, const Question& question,
            int look_index)
 {
@@ -150,6 +137,7 @@ Look judge(const TileStats& tested, const TileStats& reference, const Question& 
     look.runs = tested.run_count > 0 ? static_cast<int>(tested.run_count) : 0;
     look.alpha = alpha_of_look(question.alpha, look_index);
     look.comparison = compare_runs(tested, reference);
+    judge_tiles(tested, reference, negligible_share * question.tile_budget, look.comparison);
     // Half of a look's alpha is for tiles, half for the whole image, as in RunComparison.
     const auto channel_count = static_cast<int64_t>(look.comparison.channels.size());
     const int64_t tile_count = int64_t{look.comparison.columns} * look.comparison.rows;

@@ -24,11 +24,6 @@ enum class Verdict {
 /// Runs per side at the k-th look: first_look, then half as many again each time.
 [[nodiscard]] int runs_of_look(int first_look, int k);
 
-/// What biases of a channel are relative to [same unit as the channel]. Parts of the radiance: the
-/// picture's mean, over R, G and B, of the reference; others as alpha: their own mean. A part that
-/// is black in the picture cannot be a large share of it, whatever its own relative error.
-[[nodiscard]] double channel_scale(const TileStats& reference, const std::string& channel);
-
 /// What one channel of the whole image shows. All relative to its scale.
 struct ChannelBias {
     std::string name;
@@ -49,7 +44,8 @@ struct Look {
     std::vector<ChannelBias> channels;
     RunComparison comparison;
     double detectable = 0.0;       ///< largest of the channels
-    double tile_detectable = 0.0;  ///< of the typical tile: median over tiles, largest of R, G, B
+    double tile_detectable = 0.0;  ///< of the typical tile: median of those that vary over the
+                                   ///< runs, largest of R, G and B
     Verdict verdict = Verdict::NotEnoughRuns;
     std::string reason;  ///< of the verdict, one line
 };

@@ -6,7 +6,7 @@ namespace mote {
 struct Question {
     /// Bias worth finding in the mean of the whole image, relative: (0, 1). See channel_scale.
     double budget = 0.01;
-    /// The same for the mean of a single tile.
+    /// The same for the mean of a single tile. A hundredth of it is called bias in no tile.
     double tile_budget = 0.1;
     /// Chance of BiasFound without bias; under `equivalence` also that of NoBias for a bias of the
     /// budget or more. Holds for all looks, tiles and channels together.

@@ -103,7 +103,17 @@ std::string verify_json(const VerifyReport& report)
 {
     const VerifyResult& r = report.result;
     const Look& look = r.study.last();
-    const TileTests tests = tile_tests(look);
+    const TileTests tests = tile_tests(r.study);
+    Json worst = Json::array();
+    for (const TileFinding& tile : tests.worst) {
+        worst.push_back({{"channel", tile.channel},
+                         {"column", tile.column},
+                         {"row", tile.row},
+                         {"mean", tile.tested},
+                         {"reference_mean", tile.reference},
+                         {"t", tile.t},
+                         {"p", tile.p}});
+    }
     Json looks = Json::array();
     for (const Look& each : r.study.looks) looks.push_back(to_json(each));
     Json json{
@@ -138,7 +148,8 @@ std::string verify_json(const VerifyReport& report)
           {"size", r.params.tile_size},
           {"tests", tests.count},
           {"smallest_p", tests.smallest_p},
-          {"rejected_by_holm", tests.rejected}}},
+          {"rejected_by_holm", tests.rejected},
+          {"worst", std::move(worst)}}},
         {"non_finite", look.comparison.non_finite},
         {"errors", r.errors.single_runs > 0 ? to_json(r.errors) : Json(nullptr)},
         {"temporal", r.temporal ? to_json(*r.temporal) : Json(nullptr)},

@@ -13,6 +13,7 @@ namespace {
 
 constexpr double shown_confidence = 0.95;
 constexpr int histogram_bins = 20;
+constexpr size_t shown_tiles = 3;
 
 std::string percent(double share)
 {
@@ -90,16 +91,31 @@ std::vector<int64_t> p_histogram(const ChannelComparison& channel)
     return histogram(p_values, histogram_bins);
 }
 
-TileTests tile_tests(const Look& look)
+TileTests tile_tests(const Study& study)
 {
+    const Look& look = study.last();
     std::vector<double> p_values;
+    std::vector<TileFinding> tiles;
     for (const ChannelComparison& channel : look.comparison.channels) {
-        for (const TestResult& tile : channel.tiles) p_values.push_back(tile.p);
+        for (size_t i = 0; i < channel.tiles.size(); ++i) {
+            const TestResult& tile = channel.tiles[i];
+            p_values.push_back(tile.p);
+            tiles.push_back({channel.name, static_cast<int>(i) % look.comparison.columns,
+                             static_cast<int>(i) / look.comparison.columns,
+                             study.tested.find(channel.name)->tiles[i].mean,
+                             study.reference.find(channel.name)->tiles[i].mean, tile.t, tile.p});
+        }
     }
     TileTests tests;
     tests.count = static_cast<int64_t>(p_values.size());
-    for (const double p : p_values) tests.smallest_p = std::min(tests.smallest_p, p);
     for (const double p : holm_adjusted(p_values)) tests.rejected += p <= look.alpha ? 1 : 0;
+    const size_t shown = std::min(tiles.size(), shown_tiles);
+    std::partial_sort(tiles.begin(), tiles.begin() + static_cast<std::ptrdiff_t>(shown),
+                      tiles.end(),
+                      [](const TileFinding& a, const TileFinding& b) { return a.p < b.p; });
+    tiles.resize(shown);
+    if (shown > 0) tests.smallest_p = tiles.front().p;
+    tests.worst = std::move(tiles);
     return tests;
 }
 
@@ -125,13 +141,18 @@ std::string verify_text(const VerifyReport& report)
     text += fmt::format("{:<18} {:>10} {:>10} {:>24} {:>10} {:>8} {:>8}\n", "whole image",
                         "reference", "bias", "95 % interval", "findable", "p", "uniform");
     for (const ChannelBias& channel : look.channels) text += channel_line(look, channel);
-    const TileTests tests = tile_tests(look);
+    const TileTests tests = tile_tests(r.study);
     text += fmt::format(
         "\n{} x {} tiles of {} x {} pixels: smallest p {:.2g} of {} tests, {:.2g} after Sidak; {} "
         "rejected by Holm;\na bias of {:.2g} % in a typical tile would have been found\n",
         look.comparison.columns, look.comparison.rows, r.params.tile_size, r.params.tile_size,
         tests.smallest_p, tests.count, look.comparison.p_tiles, tests.rejected,
         100.0 * look.tile_detectable);
+    for (const TileFinding& tile : tests.worst) {
+        text += fmt::format("  tile ({}, {}) of {}: {:.4g}, reference {:.4g}, t {:.1f}, p {:.2g}\n",
+                            tile.column, tile.row, tile.channel, tile.tested, tile.reference,
+                            tile.t, tile.p);
+    }
     if (r.errors.single_runs > 0) text += error_lines(r.errors);
     if (r.temporal) text += temporal_lines(*r.temporal);
     return text;
