@@ -126,7 +126,7 @@ struct VerifyOptions {
     bool full_size = false;               ///< keep the scene's size
     std::string method;                   ///< empty: restir with the scene's settings
     std::string reference;                ///< empty: the path tracer that suits the lights
-    int passes = 1;
+    int passes = 0;                       ///< 0: see VerifyParams
     std::optional<int> frame;
     std::optional<int> warm_up;
     Question question;

@@ -46,9 +46,11 @@ void bind_tested(CLI::App& app, VerifyOptions& o)
     app.add_option("--reference", o.reference,
                    "What to test it by. Default: the path tracer that suits the lights")
         ->type_name("METHOD");
-    app.add_option("--passes", o.passes, "Samples per pixel and frame of what is tested")
+    app.add_option(
+           "--passes", o.passes,
+           "Samples per pixel and frame of what is tested. Default: 1, or more where frames do "
+           "not depend on those before")
         ->check(CLI::Range(1, 1'000'000))
-        ->capture_default_str()
         ->type_name("N");
     app.add_option("--frame", o.frame,
                    "The frame compared. Default: the scene's first after the warm-up")

@@ -127,9 +127,10 @@ std::string verify_text(const VerifyReport& report)
     std::string text = fmt::format("{}: {}: {}\n", printable(r.path, 1000),
                                    verdict_name(look.verdict), look.reason);
     for (const std::string& note : report.notes) text += note + "\n";
-    text += fmt::format("{} x {} pixels, frame {} of a scene {}, after {} frames of warm-up\n",
+    text += fmt::format("{} x {} pixels, frame {} of a scene {}, after {} frames of warm-up{}\n",
                         r.width, r.height, r.frame,
-                        r.mode == BenchMode::Moving ? "in motion" : "at rest", r.warm_up);
+                        r.mode == BenchMode::Moving ? "in motion" : "at rest", r.warm_up,
+                        r.tested.frames > 1 ? "" : " (which change nothing: not played)");
     text += estimator_line("tested", r.tested, look.runs);
     text += estimator_line("reference", r.reference, look.runs);
     text += fmt::format(

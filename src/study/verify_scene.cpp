@@ -19,6 +19,9 @@ namespace {
 
 constexpr int default_warm_up = 8;
 constexpr double most_samples = 4096.0;
+/// Of runs whose passes are independent anyway: shorter ones would pay more for keeping the books.
+constexpr double run_seconds = 0.2;
+constexpr double most_passes = 64.0;
 /// Of the time for the study, at most, for sequences.
 constexpr double temporal_share = 0.1;
 
@@ -53,6 +56,7 @@ struct Setup {
     std::vector<std::string> parts;  ///< layers that show anything
     Method tested;
     Method reference;
+    int passes = 1;  ///< of the tested method, per frame
 
     void say(const std::string& line) const
     {
@@ -130,6 +134,21 @@ ShortRuns short_runs(const RunSource& source, uint32_t seed)
     return runs;
 }
 
+/// Whether the frames before change the last one at all, by a run with and one without them.
+bool history_matters(Setup& setup, const Method& method)
+{
+    if (!method.keeps_history || setup.plan.frames.size() < 2) return false;
+    Method without = method;
+    without.keeps_history = false;
+    const int passes = std::max(setup.params.passes, 1);
+    const LayeredImage a = source_of(setup, method, passes)(short_run_seed);
+    const LayeredImage b = source_of(setup, without, passes)(short_run_seed);
+    return !std::equal(a.channels.begin(), a.channels.end(), b.channels.begin(),
+                       [](const Channel& x, const Channel& y) {
+                           return std::equal(x.data.begin(), x.data.end(), y.data.begin());
+                       });
+}
+
 /// Leaves out the layers in which nothing is seen.
 void choose_parts(Setup& setup, std::initializer_list<const ShortRuns*> all_runs)
 {
@@ -177,7 +196,7 @@ std::optional<TemporalFigures> temporal_of(const Setup& setup, const VerifyResul
 {
     if (!setup.params.temporal || !setup.tested.keeps_history) return std::nullopt;
     setup.say("sequences: at rest, and after a step of lights and densities");
-    const RenderDescription render = settings_of(setup, setup.tested, setup.params.passes);
+    const RenderDescription render = settings_of(setup, setup.tested, setup.passes);
     const TemporalInputs inputs{
         setup.scene,
         render,
@@ -207,19 +226,27 @@ VerifyResult verify_scene(const SceneDescription& scene, const VerifyParams& par
     result.mode = is_animated(scene) ? BenchMode::Moving : BenchMode::Static;
     result.params = params.study;
 
-    Setup setup{scene, params, hooks, {}, {}, {}, part_names, {}, {}};
+    Setup setup{scene, params, hooks, {}, {}, {}, part_names, {}, {}, 1};
     setup.tested = params.method.empty() ? own_method() : find_method(params.method);
     SceneCache scene_cache;
     setup.plan = plan_frames(scene, result.mode, result.frame, {result.warm_up, 1}, scene_cache);
     setup.last_frame = {{setup.plan.frames.back()}, 1};
     setup.reference = choose_reference(setup);
 
-    const RenderDescription tested_settings = settings_of(setup, setup.tested, params.passes);
-    if (tested_settings.estimator == EstimatorKind::Restir && !is_unbiased(tested_settings.restir))
-        result.params.question.equivalence = true;
+    setup.tested.keeps_history = history_matters(setup, setup.tested);
+
+    const RenderDescription tested_settings = settings_of(setup, setup.tested, setup.passes);
+    const bool is_biased =
+        tested_settings.estimator == EstimatorKind::Restir && !is_unbiased(tested_settings.restir);
+    if (is_biased) result.params.question.equivalence = true;
     setup.say(fmt::format("short runs of {} and {}", setup.tested.name, setup.reference.name));
-    const ShortRuns tested =
-        short_runs(source_of(setup, setup.tested, params.passes), short_run_seed);
+    setup.passes = std::max(params.passes, 1);
+    ShortRuns tested = short_runs(source_of(setup, setup.tested, setup.passes), short_run_seed);
+    if (params.passes == 0 && !setup.tested.keeps_history) {
+        const double fitting = std::round(run_seconds / tested.seconds);
+        setup.passes = static_cast<int>(std::clamp(fitting, 1.0, most_passes));
+        tested = short_runs(source_of(setup, setup.tested, setup.passes), short_run_seed);
+    }
     const ShortRuns reference =
         short_runs(source_of(setup, setup.reference, 1), short_run_seed + 2);
     if (image_mean(color_of(reference.images[0])) == 0.0 &&
@@ -229,7 +256,7 @@ VerifyResult verify_scene(const SceneDescription& scene, const VerifyParams& par
     }
     choose_parts(setup, {&tested, &reference});
     const int samples = reference_samples(tested, reference);
-    result.tested = {setup.tested.name, params.passes, frames_of(setup, setup.tested),
+    result.tested = {setup.tested.name, setup.passes, frames_of(setup, setup.tested),
                      tested.seconds};
     result.reference = {setup.reference.name, samples, frames_of(setup, setup.reference),
                         samples * reference.seconds};
@@ -239,7 +266,7 @@ VerifyResult verify_scene(const SceneDescription& scene, const VerifyParams& par
         const double share = params.temporal && setup.tested.keeps_history ? temporal_share : 0.0;
         result.params.seconds = std::max((1.0 - share) * limit - seconds_since(start), 1e-3);
     }
-    result.study = run_study(source_of(setup, setup.tested, params.passes),
+    result.study = run_study(source_of(setup, setup.tested, setup.passes),
                              source_of(setup, setup.reference, samples), result.params, hooks.say);
     if (result.study.reference_mean.image_means.mean == 0.0 ||
         result.study.reference_mean.run_count < 2) {

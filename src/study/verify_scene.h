@@ -17,8 +17,10 @@ struct VerifyParams {
     std::string reference;  ///< the same; empty: the path tracer that suits the scene
     std::optional<int> frame;    ///< the frame compared; empty: the scene's first after warm-up
     std::optional<int> warm_up;  ///< frames before it; empty: 8, or as many as the animation has
-    int passes = 1;              ///< of the tested estimator, per frame
-    bool temporal = true;        ///< measure sequences as well, of methods that keep history
+    /// Of the tested estimator, per frame; 0: one, but where frames do not depend on those before
+    /// as many as take about a fifth of a second.
+    int passes = 0;
+    bool temporal = true;  ///< measure sequences as well, of methods that keep history
     StudyParams study;
 };
 
@@ -31,7 +33,7 @@ struct VerifyHooks {
 struct EstimatorInfo {
     std::string name;
     int samples = 1;  ///< per pixel and frame
-    int frames = 1;   ///< rendered per run
+    int frames = 1;   ///< rendered per run; 1 where those before change nothing in the last one
     double run_seconds = 0.0;
 };
 
