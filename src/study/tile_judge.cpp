@@ -13,6 +13,9 @@ namespace {
 
 constexpr double suspicious_share = 0.25;
 
+/// The chance to see none of so many is 5e-5; with fewer seen, t stays small.
+constexpr double missed_hits = 10.0;
+
 /// Variance of the tested runs over that of the reference's, of the median tile; 0 if none varies.
 double usual_ratio(const std::vector<RunningStats>& tested,
                    const std::vector<RunningStats>& reference)
@@ -23,6 +26,22 @@ double usual_ratio(const std::vector<RunningStats>& tested,
         ratios.push_back(tested[i].variance() / reference[i].variance());
     }
     return ratios.empty() ? 0.0 : median(std::move(ratios));
+}
+
+/// What one sample that hits changes in a tile's mean over a run: of few and rare hits the variance
+/// is mean times size. That of a tile with larger hits than most.
+double hit_size(const std::vector<RunningStats>& tiles)
+{
+    std::vector<double> sizes;
+    for (const RunningStats& tile : tiles) {
+        if (tile.m2 > 0.0 && tile.mean != 0.0) {
+            sizes.push_back(tile.variance() / std::abs(tile.mean));
+        }
+    }
+    if (sizes.empty()) return 0.0;
+    const auto large = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() * 9 / 10);
+    std::nth_element(sizes.begin(), large, sizes.end());
+    return *large;
 }
 
 TestResult test_tile(RunningStats tested, const RunningStats& reference, double ratio,
@@ -49,9 +68,12 @@ void judge_tiles(const TileStats& tested, const TileStats& reference, double tol
         const auto& reference_tiles = reference.find(channel.name)->tiles;
         const double ratio = usual_ratio(tested_tiles, reference_tiles);
         const double scale = channel_scale(reference, channel.name);
+        const double missed = missed_hits *
+                              std::max(hit_size(tested_tiles), hit_size(reference_tiles)) /
+                              static_cast<double>(std::max<int64_t>(reference.run_count, 1));
         for (size_t i = 0; i < channel.tiles.size(); ++i) {
-            channel.tiles[i] =
-                test_tile(tested_tiles[i], reference_tiles[i], ratio, tolerance * scale);
+            channel.tiles[i] = test_tile(tested_tiles[i], reference_tiles[i], ratio,
+                                         std::max(tolerance * scale, missed));
             smallest = std::min(smallest, channel.tiles[i].p);
             ++tests;
         }

@@ -11,10 +11,13 @@ namespace mote {
 /// - a variance of the tested runs below a quarter of the usual multiple of the reference's (the
 ///   median over the channel's tiles) is replaced by that multiple, as if under the null hypothesis
 ///   both saw the same light;
+/// - differences that ten missed hits of a sample explain, in tiles as they are in this channel,
+/// are
+///   no bias;
 /// - differences below `tolerance` times the channel's scale (see channel_scale) are no bias.
 ///
-/// Both only make p larger. What they cost is power in single tiles where the tested estimator
-/// is much better than elsewhere; the whole image is judged without them.
+/// All only make p larger. What they cost is power in single tiles, against small biases and where
+/// the tested estimator is much better than elsewhere; the whole image is judged without them.
 void judge_tiles(const TileStats& tested, const TileStats& reference, double tolerance,
                  RunComparison& comparison);
 

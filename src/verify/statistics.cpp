@@ -157,7 +157,7 @@ double smallest_detectable_bias(const MeanEstimate& difference, double significa
     double low = 0.0;
     double high = critical;
     while (power_of(high, critical, freedom) < power) high *= 2.0;
-    while (high - low > 1e-6 * high) {
+    for (int i = 0; i < 50; ++i) {
         const double middle = 0.5 * (low + high);
         (power_of(middle, critical, freedom) < power ? low : high) = middle;
     }
