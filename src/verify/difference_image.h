@@ -15,7 +15,8 @@ namespace mote {
                                             const LayeredImage& reference,
                                             std::span<const LayerMetrics> layers);
 
-/// Display colour in [0,1] of a signed value: white 0, red positive, blue negative, full colour from
+/// Display colour in [0,1] of a signed value: white 0, red positive, blue negative, full colour
+/// from
 /// +-full_scale on, green not finite.
 [[nodiscard]] Spectrum signed_colour(double value, double full_scale);
 
