@@ -8,11 +8,11 @@
 #include "app/frame_files.h"
 #include "app/signals.h"
 #include "app/text_file.h"
-#include "bench/methods.h"
 #include "bench/report.h"
 #include "bench/result_changes.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "runs/methods.h"
 #include "scene/scene_io.h"
 #include "volumes/walk_isa.h"
 

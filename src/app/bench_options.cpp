@@ -6,9 +6,9 @@
 #include <CLI/CLI.hpp>
 
 #include "app/shared_options.h"
-#include "bench/methods.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "runs/methods.h"
 
 namespace mote {
 

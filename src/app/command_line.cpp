@@ -11,6 +11,7 @@
 #include "app/compare_threshold.h"
 #include "app/exit_codes.h"
 #include "app/shared_options.h"
+#include "app/verify_options.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "volumes/walk_isa.h"
@@ -230,6 +231,7 @@ struct AllOptions {
     SheetOptions sheet;
     CompareOptions compare;
     BenchOptions bench;
+    VerifyOptions verify;
     SchemaOptions schema;
     std::optional<Isa> isa;
     std::vector<std::string> shorthands;  ///< overrides that render options stand for
@@ -256,6 +258,8 @@ void bind_all(CLI::App& app, AllOptions& o)
                  o.compare);
     bind_bench(*app.add_subcommand("bench", "Measure error against time of several methods"),
                o.bench);
+    bind_verify(*app.add_subcommand("verify", "Test whether an estimator is biased on a scene"),
+                o.verify);
     app.add_subcommand("schema", "Print the JSON Schema of scene files")
         ->add_flag("--markdown", o.schema.markdown, "Print the tables of scenes/README.md instead");
     app.add_subcommand("version", "Print the version, the build and the libraries");
@@ -333,6 +337,7 @@ CommandLine chosen_command(const CLI::App& app, AllOptions& o)
     if (name == "sheet") return std::move(o.sheet);
     if (name == "compare") return std::move(o.compare);
     if (name == "bench") return std::move(o.bench);
+    if (name == "verify") return std::move(o.verify);
     if (name == "schema") return o.schema;
     return VersionOptions{};
 }

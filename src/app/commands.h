@@ -13,6 +13,8 @@ void run_sheet(const SheetOptions& options);
 /// Throws Error(BiasFound) when a figure is over its threshold, after writing the files asked for.
 void run_compare(const CompareOptions& options);
 void run_bench(const BenchOptions& options);
+/// Throws Error(BiasFound) or Error(NotEnoughRuns) after writing the files asked for.
+void run_verify(const VerifyOptions& options);
 void run_schema(const SchemaOptions& options);
 void run_version(const VersionOptions& options);
 

@@ -29,6 +29,7 @@ struct Run {
     void operator()(const SheetOptions& o) const { start(o), run_sheet(o); }
     void operator()(const CompareOptions& o) const { start(o), run_compare(o); }
     void operator()(const BenchOptions& o) const { start(o), run_bench(o); }
+    void operator()(const VerifyOptions& o) const { start(o), run_verify(o); }
     void operator()(const SchemaOptions& o) const { run_schema(o); }
     void operator()(const VersionOptions& o) const { run_version(o); }
 

@@ -6,6 +6,8 @@
 #include <variant>
 #include <vector>
 
+#include "study/question.h"
+
 namespace mote {
 
 /// What every command understands.
@@ -117,6 +119,28 @@ struct BenchOptions {
     LogOptions log;
 };
 
+struct VerifyOptions {
+    std::string scene;
+    std::vector<std::string> overrides;   ///< as for render
+    std::vector<std::string> resolution;  ///< overrides that --resolution stands for
+    bool full_size = false;               ///< keep the scene's size
+    std::string method;                   ///< empty: restir with the scene's settings
+    std::string reference;                ///< empty: the path tracer that suits the lights
+    int passes = 0;                       ///< 0: see VerifyParams
+    std::optional<int> frame;
+    std::optional<int> warm_up;
+    Question question;
+    int tile_size = 8;
+    int runs = 4096;
+    double time = 420.0;  ///< [s]
+    bool sequences = true;
+    int seed = 1;
+    int threads = 0;   ///< 0: those this process may use
+    std::string json;  ///< file; empty: none
+    std::string html;  ///< file; empty: none
+    LogOptions log;
+};
+
 struct SchemaOptions {
     bool markdown = false;
 };
@@ -130,6 +154,6 @@ struct PrintText {
 
 using CommandLine =
     std::variant<PrintText, RenderOptions, CheckOptions, InfoOptions, CacheOptions, SheetOptions,
-                 CompareOptions, BenchOptions, SchemaOptions, VersionOptions>;
+                 CompareOptions, BenchOptions, VerifyOptions, SchemaOptions, VersionOptions>;
 
 }  // namespace mote

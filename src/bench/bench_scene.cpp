@@ -7,10 +7,10 @@
 
 #include <fmt/format.h>
 
-#include "bench/pilot.h"
-#include "bench/play_run.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "runs/pilot.h"
+#include "runs/play_run.h"
 
 namespace mote {
 

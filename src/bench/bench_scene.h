@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "bench/figures.h"
-#include "bench/modes.h"
 #include "render/frame.h"
+#include "runs/modes.h"
 
 namespace mote {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "bench/trimmed_mean.h"
+#include "runs/trimmed_mean.h"
 #include "verify/statistics.h"
 
 namespace mote {

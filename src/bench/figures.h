@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/run_error.h"
+#include "runs/run_error.h"
 
 namespace mote {
 

@@ -53,26 +53,6 @@ std::vector<uint8_t> to_bytes(const Buffer2D<Spectrum>& image, const PreviewPara
     return bytes;
 }
 
-/// The compressed file in memory, so that writing it can report every error.
-std::vector<char> encode(const std::string& path, const Buffer2D<Spectrum>& image,
-                         const PreviewParams& params)
-{
-    PngImage png;
-    png.image.width = static_cast<png_uint_32>(image.width());
-    png.image.height = static_cast<png_uint_32>(image.height());
-    png.image.format = PNG_FORMAT_RGB;
-    const std::vector<uint8_t> bytes = to_bytes(image, params);
-    png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png.image);
-    std::vector<char> file(size);
-    if (!png_image_write_to_memory(&png.image, file.data(), &size, 0, bytes.data(), 0, nullptr)) {
-        throw Error(ExitCode::Output,
-                    fmt::format("cannot write \"{}\": {}", printable(path, 1000),
-                                printable(static_cast<const char*>(png.image.message))));
-    }
-    file.resize(size);
-    return file;
-}
-
 void check_size(const std::string& path, const png_image& image)
 {
     const int64_t pixels = int64_t{image.width} * int64_t{image.height};
@@ -102,11 +82,30 @@ Spectrum apply_view(Spectrum radiance, const PreviewParams& params)
     return {filmic_curve(exposed.x), filmic_curve(exposed.y), filmic_curve(exposed.z)};
 }
 
+std::vector<char> encode_png(const Buffer2D<Spectrum>& image, const PreviewParams& params)
+{
+    MOTE_ASSERT(image.size() > 0);
+    PngImage png;
+    png.image.width = static_cast<png_uint_32>(image.width());
+    png.image.height = static_cast<png_uint_32>(image.height());
+    png.image.format = PNG_FORMAT_RGB;
+    const std::vector<uint8_t> bytes = to_bytes(image, params);
+    png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png.image);
+    std::vector<char> file(size);
+    if (!png_image_write_to_memory(&png.image, file.data(), &size, 0, bytes.data(), 0, nullptr)) {
+        throw Error(ExitCode::Output,
+                    fmt::format("cannot encode a PNG: {}",
+                                printable(static_cast<const char*>(png.image.message))));
+    }
+    file.resize(size);
+    return file;
+}
+
 void write_png(const std::string& path, const Buffer2D<Spectrum>& image,
                const PreviewParams& params)
 {
-    MOTE_ASSERT(image.size() > 0);
-    const std::vector<char> bytes = encode(path, image, params);
+    // In memory first, so that writing the file can report every error.
+    const std::vector<char> bytes = encode_png(image, params);
     write_atomically(path, [&](const std::string& temporary_path) {
         OutputFile file(temporary_path, path);
         file.write(bytes.data(), bytes.size());

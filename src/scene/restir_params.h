@@ -111,4 +111,14 @@ struct RestirParams {
     return p;
 }
 
+/// Whether images of these parameters have the right mean; the others are known to be biased.
+[[nodiscard]] inline bool is_unbiased(const RestirParams& p)
+{
+    const bool reuses = p.reuse == ReuseMode::Temporal || p.reuse == ReuseMode::Spatial ||
+                        p.reuse == ReuseMode::Both;
+    const bool reuse_is_right =
+        p.visibility != TargetVisibility::None && p.mis != ReuseMis::Constant;
+    return p.corrections && (!reuses || reuse_is_right);
+}
+
 }  // namespace mote

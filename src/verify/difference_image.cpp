@@ -9,14 +9,6 @@ namespace mote {
 
 namespace {
 
-Spectrum colour_of(double relative, double full_scale)
-{
-    if (!std::isfinite(relative)) return {0.0f, 0.5f, 0.0f};
-    if (relative == 0.0) return Spectrum(1.0f);
-    const auto faded = static_cast<float>(std::max(1.0 - std::abs(relative) / full_scale, 0.0));
-    return relative > 0.0 ? Spectrum(1.0f, faded, faded) : Spectrum(faded, faded, 1.0f);
-}
-
 /// Signed relative difference of one pixel of a channel.
 double relative_difference(float tested, float reference, double epsilon)
 {
@@ -27,6 +19,14 @@ double relative_difference(float tested, float reference, double epsilon)
 }
 
 }  // namespace
+
+Spectrum signed_colour(double value, double full_scale)
+{
+    if (!std::isfinite(value)) return {0.0f, 0.5f, 0.0f};
+    if (value == 0.0) return Spectrum(1.0f);
+    const auto faded = static_cast<float>(std::max(1.0 - std::abs(value) / full_scale, 0.0));
+    return value > 0.0 ? Spectrum(1.0f, faded, faded) : Spectrum(faded, faded, 1.0f);
+}
 
 LayeredImage difference_image(const LayeredImage& tested, const LayeredImage& reference,
                               std::span<const LayerMetrics> layers)
@@ -63,7 +63,7 @@ Buffer2D<Spectrum> false_colour(const LayeredImage& tested, const LayeredImage& 
     }
     Buffer2D<Spectrum> picture(reference.width, reference.height);
     std::transform(relative.begin(), relative.end(), picture.begin(),
-                   [full_scale](double r) { return colour_of(r, full_scale); });
+                   [full_scale](double r) { return signed_colour(r, full_scale); });
     return picture;
 }
 

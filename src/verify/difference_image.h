@@ -15,6 +15,11 @@ namespace mote {
                                             const LayeredImage& reference,
                                             std::span<const LayerMetrics> layers);
 
+/// Display colour in [0,1] of a signed value: white 0, red positive, blue negative, full colour
+/// from
+/// +-full_scale on, green not finite.
+[[nodiscard]] Spectrum signed_colour(double value, double full_scale);
+
 /// A picture of one layer's signed relative difference, mean over its channels of
 /// (tested - reference) / sqrt(reference^2 + epsilon). Display colours in [0,1]: white 0, red
 /// brighter than the reference, blue darker, full colour at +-full_scale, green not finite.

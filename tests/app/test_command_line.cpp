@@ -41,7 +41,7 @@ TEST(CommandLine, HelpShowsEveryCommandAndTheTableOfExitCodes)
 {
     for (const Arguments& arguments : {Arguments{}, Arguments{"--help"}, Arguments{"-h"}}) {
         const std::string help = parse<PrintText>(arguments).text;
-        for (const char* word : {"render", "check", "info", "cache", "sheet", "schema"}) {
+        for (const char* word : {"render", "check", "info", "cache", "sheet", "schema", "verify"}) {
             EXPECT_TRUE(contains(help, word)) << word;
         }
         EXPECT_TRUE(contains(help, exit_code_table()));

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "bench/pixel_stats.h"
 #include "core/rng.h"
+#include "runs/pixel_stats.h"
 
 namespace mote {
 

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "bench/methods.h"
-#include "bench/modes.h"
-#include "bench/pilot.h"
+#include "runs/methods.h"
+#include "runs/modes.h"
+#include "runs/pilot.h"
 #include "support/expect_error.h"
 
 namespace mote {

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/run_error.h"
-#include "bench/trimmed_mean.h"
 #include "bench_command/noisy_images.h"
+#include "runs/run_error.h"
+#include "runs/trimmed_mean.h"
 
 namespace mote {
 

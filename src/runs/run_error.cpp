@@ -1,11 +1,11 @@
-#include "bench/run_error.h"
+#include "runs/run_error.h"
 
 #include <cmath>
 #include <tuple>
 #include <utility>
 #include <vector>
 
-#include "bench/trimmed_mean.h"
+#include "runs/trimmed_mean.h"
 #include "verify/metrics.h"
 
 namespace mote {

@@ -1,11 +1,11 @@
-#include "bench/pilot.h"
+#include "runs/pilot.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "bench/pixel_stats.h"
-#include "bench/run_error.h"
-#include "bench/trimmed_mean.h"
+#include "runs/pixel_stats.h"
+#include "runs/run_error.h"
+#include "runs/trimmed_mean.h"
 
 namespace mote {
 

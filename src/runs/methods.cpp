@@ -1,12 +1,12 @@
-#include "bench/methods.h"
+#include "runs/methods.h"
 
 #include <algorithm>
 
 #include <fmt/format.h>
 
-#include "bench/method_rows.h"
 #include "core/error.h"
 #include "core/text.h"
+#include "runs/method_rows.h"
 
 namespace mote {
 

@@ -1,4 +1,4 @@
-#include "bench/trimmed_mean.h"
+#include "runs/trimmed_mean.h"
 
 #include <algorithm>
 #include <cmath>

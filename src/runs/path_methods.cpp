@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "bench/method_rows.h"
+#include "runs/method_rows.h"
 
 namespace mote {
 

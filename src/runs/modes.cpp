@@ -1,4 +1,4 @@
-#include "bench/modes.h"
+#include "runs/modes.h"
 
 #include <algorithm>
 

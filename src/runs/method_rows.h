@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "bench/methods.h"
+#include "runs/methods.h"
 
 namespace mote {
 

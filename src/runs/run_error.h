@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bench/pixel_stats.h"
+#include "runs/pixel_stats.h"
 
 namespace mote {
 

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "bench/methods.h"
-#include "bench/play_run.h"
+#include "runs/methods.h"
+#include "runs/play_run.h"
 
 namespace mote {
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include "bench/modes.h"
 #include "core/buffer2d.h"
 #include "core/math.h"
 #include "render/frame.h"
+#include "runs/modes.h"
 
 namespace mote {
 
@@ -19,8 +19,7 @@ struct PlayedRun {
 
 /// Renders the plan's frames in order, from empty history; without history only the last one.
 /// Caches are charged evenly over the frames rendered: in full where every frame builds them,
-/// spread where one build serves all. Throws Error(Interrupted) once `stop` says so. This is the
-/// one place where the benchmark calls the renderer.
+/// spread where one build serves all. Throws Error(Interrupted) once `stop` says so.
 [[nodiscard]] PlayedRun play_run(const FramePlan& plan, bool keeps_history,
                                  const RenderDescription& render, StopRequested stop);
 

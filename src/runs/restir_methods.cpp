@@ -1,4 +1,4 @@
-#include "bench/method_rows.h"
+#include "runs/method_rows.h"
 
 namespace mote {
 

@@ -1,10 +1,10 @@
-#include "bench/pixel_stats.h"
+#include "runs/pixel_stats.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "bench/trimmed_mean.h"
+#include "runs/trimmed_mean.h"
 
 namespace mote {
 
