@@ -180,16 +180,27 @@ Drawn draw(const SurfaceVertex& v, const Local& local, Vec3 u)
 
 }  // namespace
 
-Spectrum eval_bsdf(const SurfaceVertex& v, Vec3 wo, Vec3 wi)
+BsdfValue eval_bsdf_and_pdf(const SurfaceVertex& v, Vec3 wo, Vec3 wi)
 {
     const std::optional<Local> local = make_local(v, wo);
-    return local ? eval(v, *local, wo, wi).f : Spectrum(0.0f);
+    if (!local) return {};
+    const Lobe lobe = eval(v, *local, wo, wi);
+    return {lobe.f, lobe.pdf, std::abs(glm::dot(local->frame[2], wi))};
+}
+
+Spectrum eval_bsdf(const SurfaceVertex& v, Vec3 wo, Vec3 wi)
+{
+    return eval_bsdf_and_pdf(v, wo, wi).f;
 }
 
 float bsdf_pdf(const SurfaceVertex& v, Vec3 wo, Vec3 wi)
 {
-    const std::optional<Local> local = make_local(v, wo);
-    return local ? eval(v, *local, wo, wi).pdf : 0.0f;
+    return eval_bsdf_and_pdf(v, wo, wi).pdf_dir;
+}
+
+float shading_cosine(const SurfaceVertex& v, Vec3 wo, Vec3 wi)
+{
+    return eval_bsdf_and_pdf(v, wo, wi).cosine;
 }
 
 std::optional<BsdfSample> sample_bsdf(const SurfaceVertex& v, Vec3 wo, Vec3 u)
@@ -202,13 +213,7 @@ std::optional<BsdfSample> sample_bsdf(const SurfaceVertex& v, Vec3 wo, Vec3 u)
     if (is_reflection(v, wo, wi) != drawn.is_reflected) return std::nullopt;
     const Lobe lobe = eval(v, *local, wo, wi);
     if (!(lobe.pdf > 0.0f) || !std::isfinite(lobe.pdf)) return std::nullopt;
-    return BsdfSample{wi, lobe.f, lobe.pdf};
-}
-
-float shading_cosine(const SurfaceVertex& v, Vec3 wo, Vec3 wi)
-{
-    const std::optional<Local> local = make_local(v, wo);
-    return local ? std::abs(glm::dot(local->frame[2], wi)) : 0.0f;
+    return BsdfSample{wi, {lobe.f, lobe.pdf, std::abs(glm::dot(local->frame[2], wi))}};
 }
 
 Spectrum surface_albedo(const SurfaceVertex& v)

@@ -6,11 +6,17 @@
 
 namespace mote {
 
+/// The BSDF for a pair of directions, with all that an estimator needs beside it.
+struct BsdfValue {
+    Spectrum f{0.0f};      ///< eval_bsdf [1/sr]
+    float pdf_dir = 0.0f;  ///< bsdf_pdf [1/sr]
+    float cosine = 0.0f;   ///< shading_cosine
+};
+
 /// A scattered direction.
 struct BsdfSample {
-    Vec3 wi{0.0f};         ///< [unit]
-    Spectrum f{0.0f};      ///< eval_bsdf of it
-    float pdf_dir = 0.0f;  ///< bsdf_pdf of it [1/sr], > 0
+    Vec3 wi{0.0f};    ///< [unit]
+    BsdfValue value;  ///< of it; pdf_dir > 0
 };
 
 /// The BSDF [1/sr], without the cosine: radiance towards wo per irradiance from wi. Reciprocal, but
@@ -25,6 +31,9 @@ struct BsdfSample {
 
 /// Density [1/sr] with which sample_bsdf draws wi.
 [[nodiscard]] float bsdf_pdf(const SurfaceVertex& v, Vec3 wo, Vec3 wi);
+
+/// All three at once.
+[[nodiscard]] BsdfValue eval_bsdf_and_pdf(const SurfaceVertex& v, Vec3 wo, Vec3 wi);
 
 /// |cosine| between wi and the normal that eval_bsdf shades by.
 [[nodiscard]] float shading_cosine(const SurfaceVertex& v, Vec3 wo, Vec3 wi);

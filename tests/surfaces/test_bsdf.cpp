@@ -185,9 +185,9 @@ TEST(BsdfStat, SampledAlbedoAgreesWithQuadrature)
             const RunningStats stats = test::run_trials(10'000, 8, [&](Rng& rng) {
                 const auto sample = sample_bsdf(v, wo, rng.uniform3());
                 if (!sample) return 0.0f;
-                EXPECT_EQ(sample->f, eval_bsdf(v, wo, sample->wi));
-                EXPECT_EQ(sample->pdf_dir, bsdf_pdf(v, wo, sample->wi));
-                return sample->f.x * shading_cosine(v, wo, sample->wi) / sample->pdf_dir;
+                EXPECT_EQ(sample->value.f, eval_bsdf(v, wo, sample->wi));
+                EXPECT_EQ(sample->value.pdf_dir, bsdf_pdf(v, wo, sample->wi));
+                return sample->value.f.x * sample->value.cosine / sample->value.pdf_dir;
             });
             const double exact = quadrature_albedo(v, wo, 1.0f);
             EXPECT_LT(std::abs(stats.mean - exact), 5.0 * stats.standard_error() + 0.005 * exact)
@@ -235,7 +235,7 @@ TEST(Bsdf, MirrorsAndClearGlassFollowTheirLaws)
         const auto sample = sample_bsdf(v, wo, rng.uniform3());
         ASSERT_TRUE(sample);
         EXPECT_LT(glm::length(sample->wi - Vec3(-sin_o, 0.0f, cos_o)), 0.3f);
-        EXPECT_NEAR(sample->f.x * sample->wi.z / sample->pdf_dir, 1.0f, 0.02f);
+        EXPECT_NEAR(sample->value.f.x * sample->wi.z / sample->value.pdf_dir, 1.0f, 0.02f);
     }
     v.material = make(MaterialKind::Dielectric, 0.0f);
     const float sin_i = sin_o / 1.5f;
