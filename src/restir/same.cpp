@@ -1,15 +1,10 @@
 #include "restir/same.h"
 
-#include <algorithm>
-
 namespace mote {
 
 bool is_same(const MovingTransform& a, const MovingTransform& b)
 {
-    return std::equal(
-        a.keys.begin(), a.keys.end(), b.keys.begin(), b.keys.end(), [](const Trs& p, const Trs& q) {
-            return p.translate == q.translate && p.rotate == q.rotate && p.scale == q.scale;
-        });
+    return a == b;
 }
 
 bool is_same(const Light& a, const Light& b)
