@@ -57,7 +57,8 @@ TEST(SceneErrors, NamePlaceKeyAndRemedy)
         {"[output]\naovs = [\"z\"]",
          "scene.toml:2:9: error: unknown \"z\" in \"aovs\" in [output] (did you mean \"Z\"?); "
          "known: Z, albedo, motion, variance, samples, volume_direct, volume_indirect, "
-         "volume_emission, background, transmittance, optical_depth, volume_Z, restir, cost, work"},
+         "volume_emission, background, transmittance, optical_depth, volume_Z, restir, cost, work, "
+         "direct, indirect, emission, N, P"},
         {"[output]\naovs = [\"Z\", \"Z\"]",
          "scene.toml:2:14: error: \"Z\" is twice in \"aovs\" in [output]"},
         {"[output]\npath = \"a\\u0000b\"",
