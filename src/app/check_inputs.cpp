@@ -16,6 +16,7 @@
 #include "particles/source_info.h"
 #include "render/aov.h"
 #include "scene/prepare.h"
+#include "surfaces/load_mesh.h"
 #include "volumes/grid_info.h"
 
 namespace mote {
@@ -189,10 +190,8 @@ InputReport check_inputs(const SceneDescription& scene, const std::vector<int>& 
             (void)read_image((std::filesystem::path(scene.base_dir) / light.image).string());
         });
     }
-    for (size_t i = 0; i < scene.meshes.size(); ++i) {
-        const MeshDescription& mesh = scene.meshes[i];
-        check.keep_message(
-            [&] { require_file(mesh.file, scene.base_dir, title("mesh", mesh.name, i)); });
+    for (const ObjectDescription& object : scene.objects) {
+        check.open_files(object.file, [](const std::string& path, bool) { (void)load_mesh(path); });
     }
     return check.report;
 }

@@ -117,6 +117,11 @@ std::string describe_scene(const SceneDescription& scene, int frame)
     for (const Volume& volume : prepared.media.volumes) text += volume_lines(volume, scene.fps);
     text += fmt::format("lights       {}{}\n", prepared.lights.size(),
                         prepared.environment ? " and an environment" : "");
+    if (prepared.surfaces) {
+        text +=
+            fmt::format("objects      {} with {} meshes, {}\n", prepared.surfaces->objects.size(),
+                        stats.meshes_built, format_bytes(static_cast<double>(stats.mesh_bytes)));
+    }
     text +=
         fmt::format("memory       {} of volumes, {} not finite and {} negative values replaced\n",
                     format_bytes(static_cast<double>(stats.brick_bytes)), stats.non_finite_values,

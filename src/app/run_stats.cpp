@@ -60,6 +60,10 @@ Json to_json(const FrameRecord& r)
                     {"grids_reused", r.prepare.grids_reused},
                     {"particles", r.prepare.particles},
                     {"brick_bytes", r.prepare.brick_bytes},
+                    {"meshes_built", r.prepare.meshes_built},
+                    {"meshes_reused", r.prepare.meshes_reused},
+                    {"instance_trees_built", r.prepare.instance_trees_built},
+                    {"mesh_bytes", r.prepare.mesh_bytes},
                     {"non_finite_values", r.prepare.non_finite_values},
                     {"negative_values", r.prepare.negative_values}};
     j["paths"] = r.render.paths;

@@ -11,6 +11,8 @@ struct Trs {
     Vec3d translate{0.0};  ///< [m]
     Quatd rotate{1.0, 0.0, 0.0, 0.0};
     Vec3d scale{1.0};
+
+    bool operator==(const Trs&) const = default;
 };
 
 /// world_from_object matrix of a Trs.
@@ -25,6 +27,7 @@ struct MovingTransform {
 
     [[nodiscard]] bool is_moving() const { return keys.size() > 1; }
     [[nodiscard]] Trs at(float time) const;
+    bool operator==(const MovingTransform&) const = default;
 };
 
 /// Keyframe of an object's transform. Between keys every number runs linearly, the angles too, so

@@ -1,6 +1,7 @@
 #include "reference/direct_light.h"
 
 #include "reference/mis.h"
+#include "reference/visibility.h"
 #include "scene/environment.h"
 
 namespace mote {
@@ -43,14 +44,15 @@ Spectrum estimate_emission_light(const TraceContext& context, const ScatterEvent
     const float distance2 = glm::dot(to_point, to_point);
     if (!(distance2 > 0.0f) || !(max_component(sample.j) > 0.0f)) return Spectrum(0.0f);
     const float distance = std::sqrt(distance2);
-    const Ray ray{event.x, to_point / distance, event.time};
-    const float phase = eval_phase(*event.phase, event.wo, ray.d);
+    const Vec3 wi = to_point / distance;
+    const Scattering scattering = eval_scattering(event, wi);
     const float pdf = choice.pmf * sample.pdf_volume;  // [1/m^3]
-    const float weight =
-        shadow_ray_weight(context.params, pdf, seen_emission_pdf(emissive, phase, distance2));
+    const float weight = shadow_ray_weight(
+        context.params, pdf, seen_emission_pdf(emissive, scattering.pdf_dir, distance2));
     if (!(weight > 0.0f)) return Spectrum(0.0f);
-    return sample.j * (weight * phase / (distance2 * pdf)) *
-           estimate_transmittance(media, ray, {0.0f, distance}, context.params.transmittance, rng);
+    if (!(max_component(scattering.f) > 0.0f)) return Spectrum(0.0f);
+    return sample.j * (weight * scattering.f / (distance2 * pdf)) *
+           estimate_visibility(context, event, wi, distance, rng);
 }
 
 }  // namespace
@@ -68,19 +70,18 @@ Spectrum estimate_direct_light(const TraceContext& context, const ScatterEvent& 
             : sample_light(context.scene.lights[static_cast<size_t>(choice->index)], event.x,
                            rng.uniform2());
     if (!sample) return Spectrum(0.0f);
-    const float phase = eval_phase(*event.phase, event.wo, sample->wi);
+    const Scattering scattering = eval_scattering(event, sample->wi);
     const float pdf = choice->pmf * sample->pdf_dir;
     float pdf_equiangular = 0.0f;
     if (event.first && choice->source == LightSource::Lamp) {
         pdf_equiangular = equiangular_ratio(context, *event.first, choice->index) * sample->pdf_dir;
     }
-    const float weight =
-        shadow_ray_weight(context.params, pdf, sample->is_delta ? 0.0f : phase, pdf_equiangular);
+    const float weight = shadow_ray_weight(
+        context.params, pdf, sample->is_delta ? 0.0f : scattering.pdf_dir, pdf_equiangular);
     if (!(weight > 0.0f) || !(max_component(sample->Li) > 0.0f)) return Spectrum(0.0f);
-    const Ray ray{event.x, sample->wi, event.time};
-    return sample->Li * (weight * phase / pdf) *
-           estimate_transmittance(context.scene.media, ray, {0.0f, sample->distance},
-                                  context.params.transmittance, rng);
+    if (event.surface && !(max_component(scattering.f) > 0.0f)) return Spectrum(0.0f);
+    return sample->Li * (weight * scattering.f / pdf) *
+           estimate_visibility(context, event, sample->wi, sample->distance, rng);
 }
 
 Spectrum seen_light(const TraceContext& context, const LightRay& light_ray,
@@ -89,6 +90,7 @@ Spectrum seen_light(const TraceContext& context, const LightRay& light_ray,
     const Ray& ray = light_ray.ray;
     const auto visibility = [&](float t) {
         if (t_end) return *t_end >= t ? 1.0f : 0.0f;
+        if (t > light_ray.t_surface) return 0.0f;
         return estimate_transmittance(context.scene.media, ray, {0.0f, t},
                                       context.params.transmittance, rng);
     };
@@ -112,6 +114,7 @@ Spectrum seen_light(const TraceContext& context, const LightRay& light_ray,
     }
     const auto& environment = context.scene.environment;
     if (!environment || (t_end && *t_end < infinity)) return sum;
+    if (light_ray.t_surface < infinity) return sum;
     float weight = 1.0f;
     if (!light_ray.is_camera) {
         const float pmf = context.lights.pmf(LightSource::Environment, 0, ray.o);
@@ -120,6 +123,20 @@ Spectrum seen_light(const TraceContext& context, const LightRay& light_ray,
     }
     if (!(weight > 0.0f)) return sum;
     return sum + environment_radiance(*environment, ray.d) * (weight * visibility(infinity));
+}
+
+Spectrum seen_surface_light(const TraceContext& context, const LightRay& light_ray,
+                            const SurfaceVertex& vertex)
+{
+    const Spectrum Le = surface_emission(vertex, -light_ray.ray.d);
+    if (light_ray.is_camera || !(max_component(Le) > 0.0f)) return Le;
+    const auto object = static_cast<size_t>(vertex.object);
+    const int index = context.scene.first_light_of_object[object] + vertex.triangle;
+    const Light& light = context.scene.lights[static_cast<size_t>(index)];
+    const Ray& ray = light_ray.ray;
+    const float pmf = context.lights.pmf(LightSource::Lamp, index, ray.o);
+    const float pdf_light = pmf > 0.0f ? pmf * light_pdf(light, ray.o, ray.d) : 0.0f;
+    return seen_weight(context.params, light_ray.pdf_dir, pdf_light) * Le;
 }
 
 Spectrum seen_emission(const TraceContext& context, const LightRay& light_ray, float t_end,

@@ -1,6 +1,7 @@
 #include "reference/equiangular.h"
 
 #include "reference/mis.h"
+#include "reference/visibility.h"
 #include "volumes/local_ray.h"
 
 namespace mote {
@@ -82,11 +83,11 @@ float exact_transmittance(const Media& media, const Ray& ray, float t)
 
 }  // namespace
 
-std::optional<CameraSegment> make_camera_segment(const Media& media, const Ray& ray)
+std::optional<CameraSegment> make_camera_segment(const Media& media, const Ray& ray, float t_max)
 {
     Interval range{infinity, 0.0f};
     for (const Volume& volume : media.volumes) {
-        const Interval inside = volume_interval(volume, ray, {0.0f, infinity});
+        const Interval inside = volume_interval(volume, ray, {0.0f, t_max});
         if (inside.is_empty()) continue;
         range.t0 = std::min(range.t0, inside.t0);
         range.t1 = std::max(range.t1, inside.t1);
@@ -145,10 +146,9 @@ Spectrum estimate_equiangular(const TraceContext& context, const CameraSegment& 
                                     phase_competes ? flight_pdf * phase : 0.0f);
     if (!(weight > 0.0f)) return Spectrum(0.0f);
     const Spectrum albedo = albedo_at(*medium.volume, medium.p_object);
-    const Ray shadow_ray{x, sample->wi, ray.time};
+    const ScatterEvent event{x, -ray.d, ray.time, &medium.volume->phase, nullptr, nullptr};
     return albedo * sample->Li * (weight * phase * (flight_pdf / pdf) / sample->pdf_dir) *
-           estimate_transmittance(media, shadow_ray, {0.0f, sample->distance},
-                                  context.params.transmittance, rng);
+           estimate_visibility(context, event, sample->wi, sample->distance, rng);
 }
 
 }  // namespace mote

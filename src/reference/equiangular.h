@@ -21,8 +21,9 @@ struct FirstEvent {
     float flight_pdf = 0.0f;  ///< sigma_t T [1/m]; T exact, so that both sides agree on weights
 };
 
-/// Empty if the ray misses all media.
-[[nodiscard]] std::optional<CameraSegment> make_camera_segment(const Media& media, const Ray& ray);
+/// Empty if the ray misses all media before t_max.
+[[nodiscard]] std::optional<CameraSegment> make_camera_segment(const Media& media, const Ray& ray,
+                                                               float t_max);
 
 /// The first event at distance t on a segment.
 [[nodiscard]] FirstEvent make_first_event(const Media& media, const CameraSegment& segment,

@@ -10,17 +10,24 @@ constexpr size_t few_lights = 8;
 /// Up to this many lamps are tried one by one for rays that meet them.
 constexpr size_t few_surfaces = 4;
 
-float scene_radius(const Media& media)
+float scene_radius(const Scene& scene)
 {
     Bounds3 box;
-    for (const Volume& volume : media.volumes) box.extend(world_bounds(volume));
+    for (const Volume& volume : scene.media.volumes) box.extend(world_bounds(volume));
+    if (scene.surfaces) box.extend(scene.surfaces->bvh->bounds());
     const float radius = 0.5f * glm::length(box.extent());
     return radius > 0.0f && std::isfinite(radius) ? radius : 1.0f;
 }
 
+/// Lamps that rays meet and pass.
 bool has_surface(const Light& light)
 {
     return std::holds_alternative<SphereLight>(light) || std::holds_alternative<QuadLight>(light);
+}
+
+bool can_be_met(const Light& light)
+{
+    return has_surface(light) || std::holds_alternative<TriangleLight>(light);
 }
 
 bool is_in_tree(LightSource source, float fluence)
@@ -90,7 +97,7 @@ void LightSampler::index_surfaces(const std::vector<Light>& lights)
 void LightSampler::add_emitters(const Scene& scene, const PathTracerParams& params)
 {
     const bool shadow_rays = params.light_strategy != LightStrategy::Phase;
-    const float cross_section = pi * sqr(scene_radius(scene.media));
+    const float cross_section = pi * sqr(scene_radius(scene));
     const auto add = [this](const Emitter& emitter) {
         if (emitter.power > 0.0f && std::isfinite(emitter.power)) emitters_.push_back(emitter);
     };
@@ -100,7 +107,7 @@ void LightSampler::add_emitters(const Scene& scene, const PathTracerParams& para
         if (const auto* distant = std::get_if<DistantLight>(&light)) {
             const float fluence = luminance(distant->irradiance);
             add({LightSource::Lamp, index, cross_section * fluence, fluence, {}});
-        } else if (shadow_rays || !has_surface(light)) {
+        } else if (shadow_rays || !can_be_met(light)) {
             add({LightSource::Lamp, index, light_power(light, 1.0f), 0.0f, light_bounds(light)});
         }
     }

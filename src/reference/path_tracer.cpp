@@ -6,9 +6,19 @@ namespace mote {
 namespace {
 
 /// The part of the result that light after this many scattering events belongs to.
-Spectrum& part_of(PathResult& result, int event_count)
+Spectrum& part_of(PathResult& result, int event_count, bool first_is_surface)
 {
+    if (first_is_surface) {
+        return event_count == 1 ? result.surface_direct : result.surface_indirect;
+    }
     return event_count == 1 ? result.direct : result.indirect;
+}
+
+/// A surface at the end of a ray, unless a collision comes before it.
+std::optional<SurfaceHit> find_surface(const Scene& scene, const Ray& ray)
+{
+    if (!scene.surfaces) return std::nullopt;
+    return intersect(*scene.surfaces, ray, {0.0f, infinity});
 }
 
 /// Follows a path from a ray on, `event_count` events after the camera, and adds what it brings.
@@ -19,58 +29,91 @@ void follow(const TraceContext& context, LightRay light_ray, Spectrum beta, int 
     const Scene& scene = context.scene;
     const PathTracerParams& params = context.params;
     const bool has_emission = !context.lights.emissive_volumes().empty();
+    bool first_is_surface = false;
     FirstEvent first;
     for (;; ++event_count) {
         const Ray& ray = light_ray.ray;
         const bool is_last = event_count == params.max_bounces;
         const bool needs_flight = event_count == 0 || !is_last || has_emission;
+        const auto add = [&](Spectrum& camera_part, Spectrum light) {
+            (event_count == 0 ? camera_part : part_of(result, event_count, first_is_surface)) +=
+                beta * light;
+        };
+        const std::optional<SurfaceHit> hit = find_surface(scene, ray);
+        if (hit) light_ray.t_surface = hit->t;
         // A ray after the last event only collects light: a transmittance estimate is less noisy
         // than asking whether a free flight gets there.
         std::optional<Collision> collision;
         std::optional<float> t_end;
         if (needs_flight) {
-            collision = sample_free_flight(scene.media, ray, {0.0f, infinity}, rng);
-            t_end = collision ? collision->t : infinity;
+            collision = sample_free_flight(scene.media, ray, {0.0f, light_ray.t_surface}, rng);
+            t_end = collision ? collision->t : light_ray.t_surface;
         }
-        if (has_emission) {
-            const Spectrum emission = beta * seen_emission(context, light_ray, *t_end, rng);
-            (event_count == 0 ? result.emission : part_of(result, event_count)) += emission;
-        }
+        if (has_emission) add(result.emission, seen_emission(context, light_ray, *t_end, rng));
         if (is_last && event_count > 0) t_end.reset();
-        const Spectrum seen = beta * seen_light(context, light_ray, t_end, rng);
-        (event_count == 0 ? result.background : part_of(result, event_count)) += seen;
+        add(result.background, seen_light(context, light_ray, t_end, rng));
+        std::optional<SurfaceVertex> vertex;
+        if (hit && (!collision || !t_end)) vertex = make_vertex(*scene.surfaces, *hit, ray.time);
+        if (vertex && vertex->material.is_emissive()) {
+            const float arrives =
+                t_end ? 1.0f
+                      : estimate_transmittance(scene.media, ray, {0.0f, light_ray.t_surface},
+                                               params.transmittance, rng);
+            add(result.surface_emission, arrives * seen_surface_light(context, light_ray, *vertex));
+        }
 
-        if (is_last) {
-            result.truncated = event_count > 0 || collision;
+        if (is_last) result.truncated = event_count > 0 || collision || vertex;
+        if (!collision && !vertex) return;
+        ScatterEvent event{Vec3(0.0f), -ray.d, ray.time, nullptr, nullptr, nullptr};
+        Spectrum albedo(0.0f);
+        if (collision) {
+            const Volume& volume = scene.media.volumes[static_cast<size_t>(collision->volume)];
+            event.x = ray.at(collision->t);
+            event.phase = &volume.phase;
+            albedo = albedo_at(volume, collision->p_object);
+        } else {
+            event.x = vertex->p;
+            event.surface = &*vertex;
+            albedo = surface_albedo(*vertex);
         }
-        if (event_count == 0 && collision) {
+        if (event_count == 0) {
+            first_is_surface = !collision;
             result.transmittance = 0.0f;
-            result.depth = collision->t;
+            result.depth = collision ? collision->t : hit->t;
+            result.albedo = albedo;
+            result.object = collision ? -1 : hit->object;
         }
-        if (!collision) return;
-        const Volume& volume = scene.media.volumes[static_cast<size_t>(collision->volume)];
-        const Spectrum albedo = albedo_at(volume, collision->p_object);
-        if (event_count == 0) result.albedo = albedo;
         if (is_last) return;
 
-        beta *= albedo;
+        if (collision) beta *= albedo;
         if (!(max_component(beta) > 0.0f)) return;
-        const FirstEvent* competitor = nullptr;
-        if (segment && event_count == 0) {
+        if (segment && event_count == 0 && collision) {
             first = make_first_event(scene.media, *segment, collision->t);
-            competitor = &first;
+            event.first = &first;
         }
-        const ScatterEvent event{ray.at(collision->t), -ray.d, ray.time, &volume.phase, competitor};
-        part_of(result, event_count + 1) += beta * estimate_direct_light(context, event, rng);
+        part_of(result, event_count + 1, first_is_surface) +=
+            beta * estimate_direct_light(context, event, rng);
 
+        std::optional<BsdfSample> scattered;
+        if (vertex && !collision) {
+            scattered = sample_bsdf(*vertex, event.wo, rng.uniform3());
+            if (!scattered) return;
+            beta *= scattered->value.f * (scattered->value.cosine / scattered->value.pdf_dir);
+        }
         if (event_count + 1 > params.roulette_start) {
             const float survival = std::min(1.0f, max_component(beta));
             if (rng.uniform() >= survival) return;
             beta /= survival;
         }
-        const Vec3 wi = sample_phase(volume.phase, event.wo, rng.uniform2());
-        light_ray = {Ray{event.x, wi, event.time}, phase_pdf(volume.phase, event.wo, wi), false,
-                     competitor};
+        if (scattered) {
+            const Vec3 wi = scattered->wi;
+            light_ray = {Ray{ray_origin(event, wi), wi, event.time}, scattered->value.pdf_dir,
+                         false, nullptr};
+        } else {
+            const Vec3 wi = sample_phase(*event.phase, event.wo, rng.uniform2());
+            light_ray = {Ray{event.x, wi, event.time}, phase_pdf(*event.phase, event.wo, wi), false,
+                         event.first};
+        }
     }
 }
 
@@ -83,7 +126,8 @@ PathResult trace_path(const Scene& scene, const LightSampler& lights,
     PathResult result;
     std::optional<CameraSegment> segment;
     if (params.equiangular && params.max_bounces > 0) {
-        segment = make_camera_segment(scene.media, camera_ray);
+        const std::optional<SurfaceHit> hit = find_surface(scene, camera_ray);
+        segment = make_camera_segment(scene.media, camera_ray, hit ? hit->t : infinity);
     }
     if (segment) result.direct += estimate_equiangular(context, *segment, rng);
     follow(context, {camera_ray, 0.0f, true, nullptr}, Spectrum(1.0f), 0, segment, rng, result);

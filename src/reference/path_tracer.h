@@ -9,21 +9,30 @@ namespace mote {
 
 /// What one camera path brings. The parts of L are disjoint and sum to it.
 struct PathResult {
-    Spectrum direct{0.0f};       ///< one scattering event
-    Spectrum indirect{0.0f};     ///< two and more
-    Spectrum emission{0.0f};     ///< from emissive media straight to the camera
-    Spectrum background{0.0f};   ///< environment and area lights seen through the media
-    float transmittance = 1.0f;  ///< unbiased estimate (0 or 1), camera to infinity
-    float depth = infinity;      ///< of the first collision [m]
-    Spectrum albedo{0.0f};       ///< at the first collision
-    bool truncated = false;      ///< max_bounces cut a path that could have gone on
+    Spectrum direct{0.0f};            ///< one scattering event, in a medium
+    Spectrum indirect{0.0f};          ///< two and more, the first of them in a medium
+    Spectrum emission{0.0f};          ///< from emissive media straight to the camera
+    Spectrum background{0.0f};        ///< environment and area lights seen through the media
+    Spectrum surface_direct{0.0f};    ///< one scattering event, on a surface
+    Spectrum surface_indirect{0.0f};  ///< two and more, the first of them on a surface
+    Spectrum surface_emission{0.0f};  ///< from emissive surfaces straight to the camera
+    float transmittance = 1.0f;       ///< unbiased estimate (0 or 1), camera to infinity
+    float depth = infinity;           ///< of the first event, whether it scatters or not [m]
+    Spectrum albedo{0.0f};            ///< at the first event
+    int object = -1;                  ///< of the first event, into Surfaces; -1: in a medium
+    bool truncated = false;           ///< max_bounces cut a path that could have gone on
 
-    [[nodiscard]] Spectrum L() const { return direct + indirect + emission + background; }
+    [[nodiscard]] Spectrum L() const
+    {
+        return direct + indirect + emission + background + surface_direct + surface_indirect +
+               surface_emission;
+    }
 };
 
-/// Traces one path along a camera ray: up to params.max_bounces scattering events, each lit
-/// by one shadow ray and by the scattered ray, weighted by MIS. Unbiased for every choice of params
-/// but max_bounces itself. Lamps and the environment are seen by the camera through the media.
+/// Traces one path along a camera ray: up to params.max_bounces scattering events in media and on
+/// surfaces, each lit by one shadow ray and by the scattered ray, weighted by MIS. Unbiased for
+/// every choice of params but max_bounces itself. Lamps and the environment are seen by the camera
+/// through the media.
 /// Shares phase functions, lights and media walks with the rest of mote but no reservoir,
 /// resampling-MIS or shift code: it is the judge of those.
 [[nodiscard]] PathResult trace_path(const Scene& scene, const LightSampler& lights,

@@ -20,16 +20,20 @@ std::vector<AovInfo> make_table()
          "Z",
          {"Z"},
          true,
-         "Nearest first collision over the pixel's samples, along the view axis [m]; 1e10: none. "
+         "Nearest first collision or surface over the pixel's samples, along the view axis [m]; "
+         "1e10: "
+         "none. "
          "Fog has no single depth: this is where it begins"},
         {Aov::VolumeZ,
          "volume_Z",
          {"volume_Z.Z"},
          true,
-         "Mean depth of first collisions along the view axis, so weighted by transmittance times "
+         "Mean depth of first collisions with smoke along the view axis, so weighted by "
+         "transmittance times "
          "extinction [m]; 1e10: none"},
         {Aov::Albedo, "albedo", rgb("albedo"), false,
-         "Single-scattering albedo at first collisions, premultiplied by alpha"},
+         "Single-scattering albedo at first collisions, base colour on surfaces, premultiplied by "
+         "alpha"},
         {Aov::Motion,
          "motion",
          {"motion.u", "motion.v"},
@@ -40,22 +44,24 @@ std::vector<AovInfo> make_table()
          "Variance of the pixel's mean (not of one sample), per channel of RGB"},
         {Aov::Samples, "samples", {"samples.Y"}, true, "Camera paths per pixel"},
         {Aov::VolumeDirect, "volume_direct", rgb("volume_direct"), false,
-         "Radiance scattered once"},
+         "Radiance scattered once, in smoke"},
         {Aov::VolumeIndirect, "volume_indirect", rgb("volume_indirect"), false,
-         "Radiance scattered twice or more"},
+         "Radiance scattered twice or more, last in the smoke that is seen"},
         {Aov::VolumeEmission, "volume_emission", rgb("volume_emission"), false,
          "Radiance emitted by volumes straight towards the camera"},
         {Aov::Background, "background", rgb("background"), false,
-         "Radiance of environment and area lights seen through the volumes; the four parts sum to "
-         "RGB"},
+         "Radiance of environment and area lights seen through the volumes; with the volume "
+         "and surface parts it sums to RGB"},
         {Aov::Transmittance, "transmittance", rgb("transmittance"), true,
-         "Share of light from behind all volumes that reaches the camera, computed in closed form "
+         "Share of light from behind all volumes, or from the first surface, that reaches the "
+         "camera, computed in closed form "
          "per camera ray (alpha is 1 minus an unbiased estimate of it)"},
         {Aov::OpticalDepth,
          "optical_depth",
          {"opticalDepth.Y"},
          true,
-         "Optical depth of all volumes, in closed form per camera ray, mean over the pixel"},
+         "Optical depth of all volumes up to the first surface, in closed form per camera ray, "
+         "mean over the pixel"},
         {Aov::Restir,
          "restir",
          {"restir.M", "restir.W", "restir.age"},
@@ -75,6 +81,22 @@ std::vector<AovInfo> make_table()
          "reservoirs "
          "that reuse looked at (history, neighbours) the share that took part; 0 of the path "
          "estimator"},
+        {Aov::Direct, "direct", rgb("direct"), false, "Radiance scattered once, by a surface"},
+        {Aov::Indirect, "indirect", rgb("indirect"), false,
+         "Radiance scattered twice or more, last by the surface that is seen"},
+        {Aov::Emission, "emission", rgb("emission"), false,
+         "Radiance given off by surfaces straight towards the camera"},
+        {Aov::Normal,
+         "N",
+         {"N.X", "N.Y", "N.Z"},
+         true,
+         "Shading normal of the first surface on the camera ray, smoke in front or not, in the "
+         "world, towards the camera; mean over the samples that meet one, 0: none"},
+        {Aov::Position,
+         "P",
+         {"P.X", "P.Y", "P.Z"},
+         true,
+         "Place of the first surface on the camera ray, likewise [m]"},
     };
 }
 

@@ -24,8 +24,13 @@ enum class Aov {
     Restir,
     Cost,
     Work,
+    Direct,
+    Indirect,
+    Emission,
+    Normal,
+    Position,
 };
-inline constexpr size_t aov_count = 15;
+inline constexpr size_t aov_count = 20;
 
 /// One row of the table of layers.
 struct AovInfo {
@@ -49,6 +54,11 @@ class AovSet {
     [[nodiscard]] bool has(Aov aov) const { return bits_.test(static_cast<size_t>(aov)); }
     /// Whether the scene must be prepared with velocity grids and the next frame's transforms.
     [[nodiscard]] bool needs_motion() const { return has(Aov::Motion); }
+    /// Whether any of them tells of the first surface on the camera ray, media in front or not.
+    [[nodiscard]] bool needs_first_surface() const
+    {
+        return has(Aov::Normal) || has(Aov::Position);
+    }
     /// Whether any of them tells of first collisions.
     [[nodiscard]] bool needs_first_collision() const
     {

@@ -8,7 +8,8 @@ bool FilmSample::is_finite() const
 {
     return mote::is_finite(L()) && std::isfinite(transmittance) && mote::is_finite(albedo) &&
            std::isfinite(motion.x) && std::isfinite(motion.y) && !std::isnan(optical_depth) &&
-           mote::is_finite(reservoir) && (!collided || std::isfinite(depth));
+           mote::is_finite(reservoir) && mote::is_finite(normal) && mote::is_finite(position) &&
+           (!collided || std::isfinite(depth));
 }
 
 Spectrum MeanSpectrum::mean(int64_t count) const
@@ -28,6 +29,14 @@ bool PixelFilm::add(const FilmSample& sample)
     indirect_.add(sample.indirect);
     emission_.add(sample.emission);
     background_.add(sample.background);
+    surface_direct_.add(sample.surface_direct);
+    surface_indirect_.add(sample.surface_indirect);
+    surface_emission_.add(sample.surface_emission);
+    if (sample.has_surface) {
+        ++surfaces_;
+        normal_.add(sample.normal);
+        position_.add(sample.position);
+    }
     const double tau = static_cast<double>(sample.optical_depth);
     transmittance_ += static_cast<double>(sample.transmittance);
     exact_transmittance_ += std::exp(-tau);
@@ -38,7 +47,10 @@ bool PixelFilm::add(const FilmSample& sample)
     if (sample.collided) {
         ++collisions_;
         albedo_.add(sample.albedo);
-        depth_ += static_cast<double>(sample.depth);
+        if (!sample.on_surface) {
+            ++in_smoke_;
+            depth_ += static_cast<double>(sample.depth);
+        }
         nearest_ = std::min(nearest_, sample.depth);
         collision_motion_ += glm::dvec2(sample.motion);
     } else {
@@ -77,9 +89,8 @@ void PixelFilm::layer(Aov aov, float (&values)[3]) const
             values[0] = collisions_ > 0 ? nearest_ : background_depth;
             break;
         case Aov::VolumeZ:
-            values[0] = collisions_ > 0
-                            ? static_cast<float>(depth_ / static_cast<double>(collisions_))
-                            : background_depth;
+            values[0] = in_smoke_ > 0 ? static_cast<float>(depth_ / static_cast<double>(in_smoke_))
+                                      : background_depth;
             break;
         case Aov::Albedo:
             store(albedo_.mean(count()));
@@ -115,6 +126,21 @@ void PixelFilm::layer(Aov aov, float (&values)[3]) const
             break;
         case Aov::OpticalDepth:
             values[0] = static_cast<float>(optical_depth_ / n);
+            break;
+        case Aov::Direct:
+            store(surface_direct_.mean(count()));
+            break;
+        case Aov::Indirect:
+            store(surface_indirect_.mean(count()));
+            break;
+        case Aov::Emission:
+            store(surface_emission_.mean(count()));
+            break;
+        case Aov::Normal:
+            store(normal_.mean(surfaces_));
+            break;
+        case Aov::Position:
+            store(position_.mean(surfaces_));
             break;
         case Aov::Restir:
             store(reservoir_.mean(count()));

@@ -16,9 +16,16 @@ struct FilmSample {
     Spectrum indirect{0.0f};
     Spectrum emission{0.0f};
     Spectrum background{0.0f};
+    Spectrum surface_direct{0.0f};
+    Spectrum surface_indirect{0.0f};
+    Spectrum surface_emission{0.0f};
     float transmittance = 1.0f;  ///< unbiased estimate, for alpha
     bool collided = false;       ///< whether depth and albedo mean something
-    float depth = infinity;      ///< of the first collision, along the view axis [m]
+    bool on_surface = false;     ///< whether a surface was there before any collision
+    bool has_surface = false;    ///< whether normal and position mean something
+    float depth = infinity;      ///< of the first collision or surface, along the view axis [m]
+    Vec3 normal{0.0f};           ///< of the first surface, towards the camera [unit]
+    Vec3 position{0.0f};         ///< of the first surface [m]
     Spectrum albedo{0.0f};
     Vec2 motion{0.0f};           ///< [px], v up
     float optical_depth = 0.0f;  ///< in closed form, where a layer needs it
@@ -26,7 +33,11 @@ struct FilmSample {
     float exact_rays = 0.0f;     ///< towards camera and lights
     Vec3 work{0.0f};             ///< candidates, cells of the camera ray, acceptance of reuse
 
-    [[nodiscard]] Spectrum L() const { return direct + indirect + emission + background; }
+    [[nodiscard]] Spectrum L() const
+    {
+        return direct + indirect + emission + background + surface_direct + surface_indirect +
+               surface_emission;
+    }
     [[nodiscard]] bool is_finite() const;
 };
 
@@ -56,13 +67,16 @@ class PixelFilm {
   private:
     RunningStats rgb_[3];
     MeanSpectrum direct_, indirect_, emission_, background_, albedo_, reservoir_, work_;
+    MeanSpectrum surface_direct_, surface_indirect_, surface_emission_, normal_, position_;
     double transmittance_ = 0.0;
     double exact_transmittance_ = 0.0;
     double optical_depth_ = 0.0;
     double exact_rays_ = 0.0;
     double depth_ = 0.0;
     float nearest_ = infinity;
-    int64_t collisions_ = 0;
+    int64_t collisions_ = 0;  ///< samples that met smoke or a surface
+    int64_t in_smoke_ = 0;    ///< those of them in smoke, of which depth_ is
+    int64_t surfaces_ = 0;    ///< samples with a surface, smoke in front or not
     glm::dvec2 collision_motion_{0.0};
     glm::dvec2 background_motion_{0.0};
 };

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <chrono>
 
+#include "core/error.h"
 #include "core/parallel.h"
 #include "reference/path_tracer.h"
 #include "render/film.h"
@@ -26,6 +27,18 @@ struct FrameInputs {
 /// Few enough that a stop takes effect at once, many enough that asking costs nothing.
 constexpr int samples_between_polls = 32;
 
+/// Normal and place of the first surface on a camera ray; returns its distance.
+float add_first_surface(const Surfaces& surfaces, const Ray& ray, FilmSample& sample)
+{
+    const std::optional<SurfaceHit> hit = intersect(surfaces, ray, {0.0f, infinity});
+    if (!hit) return infinity;
+    const SurfaceVertex vertex = make_vertex(surfaces, *hit, ray.time);
+    sample.has_surface = true;
+    sample.normal = glm::dot(vertex.ng, ray.d) < 0.0f ? vertex.ns : -vertex.ns;
+    sample.position = vertex.p;
+    return hit->t;
+}
+
 FilmSample trace_sample(const FrameInputs& frame, int x, int y, uint32_t sample, bool& truncated)
 {
     const Scene& scene = frame.scene;
@@ -44,6 +57,10 @@ FilmSample trace_sample(const FrameInputs& frame, int x, int y, uint32_t sample,
     out.indirect = path.indirect;
     out.emission = path.emission;
     out.background = path.background;
+    out.surface_direct = path.surface_direct;
+    out.surface_indirect = path.surface_indirect;
+    out.surface_emission = path.surface_emission;
+    out.on_surface = path.object >= 0;
     out.transmittance = path.transmittance;
     out.collided = path.depth < infinity;
     out.albedo = path.albedo;
@@ -52,10 +69,13 @@ FilmSample trace_sample(const FrameInputs& frame, int x, int y, uint32_t sample,
         out.depth =
             aovs.needs_first_collision() ? view_depth(scene.camera, ray, path.depth) : path.depth;
     }
-    if (aovs.needs_motion()) out.motion = film_motion(scene, ray, path.depth);
-    if (aovs.has(Aov::Transmittance) || aovs.has(Aov::OpticalDepth)) {
-        out.optical_depth = optical_depth(scene.media, ray, {0.0f, infinity});
+    if (aovs.needs_motion()) out.motion = film_motion(scene, ray, path.depth, path.object);
+    const bool needs_depth = aovs.has(Aov::Transmittance) || aovs.has(Aov::OpticalDepth);
+    float t_surface = infinity;
+    if (scene.surfaces && (needs_depth || aovs.needs_first_surface())) {
+        t_surface = add_first_surface(*scene.surfaces, ray, out);
     }
+    if (needs_depth) out.optical_depth = optical_depth(scene.media, ray, {0.0f, t_surface});
     return out;
 }
 
@@ -125,6 +145,10 @@ LayeredImage render_frame(const Scene& scene, const RenderDescription& render,
     const auto start = std::chrono::steady_clock::now();
     const double cpu_start = process_cpu_seconds();
     const AovSet aovs = parse_aovs(output.aovs);
+    if (scene.surfaces && render.estimator == EstimatorKind::Restir) {
+        throw Error(ExitCode::Input,
+                    "estimator \"restir\" cannot render [[objects]] yet; use \"path\"");
+    }
     const FrameInputs frame{scene, render, aovs, build_light_sampler(scene, render.path)};
     const Camera& camera = scene.camera;
     const FrameControl control{stop, tile_done};

@@ -62,7 +62,8 @@ class FrameHistory {
 /// premultiplied by nothing but the volumes themselves; A is 1 minus the mean transmittance.
 /// Attributes describe the camera. Empty image if stopped. Bit-identical for any thread count:
 /// every sample has its own random stream, keyed by (seed, frame, pixel, sample), and a pixel adds
-/// its samples in order. Throws Error(Input) for unknown layers.
+/// its samples in order. Throws Error(Input) for unknown
+/// layers, and for surfaces with the ReSTIR estimator, which cannot show them yet.
 [[nodiscard]] LayeredImage render_frame(const Scene& scene, const RenderDescription& render,
                                         const OutputDescription& output, FrameHistory& history,
                                         StopRequested stop, FrameStats& stats,

@@ -29,6 +29,15 @@ void place(const QuadLight& lamp, LocalLight& out)
     if (!lamp.two_sided) out.facing = glm::normalize(glm::cross(lamp.edge_u, lamp.edge_v));
 }
 
+void place(const TriangleLight& lamp, LocalLight& out)
+{
+    const Vec3 u = lamp.edge_u;
+    const Vec3 v = lamp.edge_v;
+    out.position = lamp.corner + (u + v) / 3.0f;
+    out.spread2 = (glm::dot(u, u) + glm::dot(v, v) - glm::dot(u, v)) / 18.0f;
+    if (!lamp.two_sided) out.facing = glm::normalize(glm::cross(u, v));
+}
+
 void place(const DistantLight& /*lamp*/, LocalLight& out)
 {
     out.power = 0.0f;

@@ -9,7 +9,7 @@
 namespace mote {
 
 /// A light at a finite place, reduced to what choosing among many of them needs: lamps at points,
-/// spheres, quads, and emissive volumes as one light each.
+/// spheres, quads, triangles, and emissive volumes as one light each.
 struct LocalLight {
     int id = -1;           ///< what LightPick::light returns
     Vec3 position{0.0f};   ///< centre of its power [m]

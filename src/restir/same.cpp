@@ -1,15 +1,10 @@
 #include "restir/same.h"
 
-#include <algorithm>
-
 namespace mote {
 
 bool is_same(const MovingTransform& a, const MovingTransform& b)
 {
-    return std::equal(
-        a.keys.begin(), a.keys.end(), b.keys.begin(), b.keys.end(), [](const Trs& p, const Trs& q) {
-            return p.translate == q.translate && p.rotate == q.rotate && p.scale == q.scale;
-        });
+    return a == b;
 }
 
 bool is_same(const Light& a, const Light& b)
@@ -27,10 +22,14 @@ bool is_same(const Light& a, const Light& b)
         const auto& q = std::get<SphereLight>(b);
         return p->position == q.position && p->radius == q.radius && p->radiance == q.radiance;
     }
-    const auto& p = std::get<QuadLight>(a);
-    const auto& q = std::get<QuadLight>(b);
-    return p.corner == q.corner && p.edge_u == q.edge_u && p.edge_v == q.edge_v &&
-           p.radiance == q.radiance && p.two_sided == q.two_sided;
+    const auto is_same_area = [](const auto& p, const auto& q) {
+        return p.corner == q.corner && p.edge_u == q.edge_u && p.edge_v == q.edge_v &&
+               p.radiance == q.radiance && p.two_sided == q.two_sided;
+    };
+    if (const auto* p = std::get_if<TriangleLight>(&a)) {
+        return is_same_area(*p, std::get<TriangleLight>(b));
+    }
+    return is_same_area(std::get<QuadLight>(a), std::get<QuadLight>(b));
 }
 
 bool is_same(const EnvironmentLight& a, const EnvironmentLight& b)

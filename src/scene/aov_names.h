@@ -21,6 +21,11 @@ inline constexpr std::array aov_names = {
     "restir",
     "cost",
     "work",
+    "direct",
+    "indirect",
+    "emission",
+    "N",
+    "P",
 };
 
 }  // namespace mote

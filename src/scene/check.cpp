@@ -91,6 +91,7 @@ struct Checker {
     void check_volumes();
     void check_particles();
     void check_lights();
+    void check_objects();
 };
 
 void Checker::check_camera()
@@ -208,6 +209,42 @@ void Checker::check_lights()
     }
 }
 
+void Checker::check_objects()
+{
+    std::vector<std::string> materials;
+    for (size_t i = 0; i < scene.materials.size(); ++i) {
+        materials.push_back(scene.materials[i].name);
+        if (materials.back().empty()) {
+            report({"materials", std::to_string(i)}, "a material needs a \"name\" to be used by");
+        }
+    }
+    const Node* list = root.find("objects");
+    for (size_t i = 0; i < scene.objects.size(); ++i) {
+        const ObjectDescription& object = scene.objects[i];
+        const std::string index = std::to_string(i);
+        const std::string& name = object.material.name;
+        const bool is_known =
+            std::find(materials.begin(), materials.end(), name) != materials.end();
+        if (!name.empty() && !is_known) {
+            report({"objects", index, "material"}, "no [[materials]] entry is named \"{}\"{}",
+                   printable(name, 60), did_you_mean(name, materials));
+        }
+        const bool in_file = list && list->kind == Node::Kind::Array && i < list->children.size();
+        const Node* material = in_file ? list->children[i].find("material") : nullptr;
+        const bool has_more =
+            material && material->kind == Node::Kind::Table && material->children.size() > 1;
+        if (!name.empty() && has_more) {
+            report({"objects", index, "material"},
+                   "\"material\" in [objects] either names a [[materials]] entry or describes one");
+        }
+        check_transforms("objects", i, object.transform);
+    }
+    if (!scene.objects.empty() && scene.render.estimator == EstimatorKind::Restir) {
+        report({"render", "estimator"},
+               "estimator \"restir\" cannot render [[objects]] yet; use \"path\"");
+    }
+}
+
 }  // namespace
 
 void check_scene(const SceneDescription& scene, const Node& root, Problems& problems)
@@ -229,14 +266,13 @@ void check_scene(const SceneDescription& scene, const Node& root, Problems& prob
     checker.check_names("volumes", scene.volumes);
     checker.check_names("particles", scene.particles);
     checker.check_names("lights", scene.lights);
-    checker.check_names("meshes", scene.meshes);
+    checker.check_names("materials", scene.materials);
+    checker.check_names("objects", scene.objects);
     checker.check_camera();
     checker.check_volumes();
     checker.check_particles();
     checker.check_lights();
-    for (size_t i = 0; i < scene.meshes.size(); ++i) {
-        checker.check_transforms("meshes", i, scene.meshes[i].transform);
-    }
+    checker.check_objects();
 }
 
 }  // namespace mote

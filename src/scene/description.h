@@ -11,6 +11,7 @@
 #include "particles/source.h"
 #include "scene/path_tracer_params.h"
 #include "scene/restir_params.h"
+#include "surfaces/material.h"
 #include "volumes/grid_source.h"
 #include "volumes/phase.h"
 #include "volumes/volume.h"
@@ -107,11 +108,22 @@ struct LightDescription {
     std::vector<TransformKey> transform;
 };
 
-/// A mesh reference. Parsed and checked; loading meshes is not supported yet and says so.
-struct MeshDescription {
+/// What objects are made of.
+struct MaterialDescription {
+    /// Of a [[materials]] entry: its own. Of an object's material: of the entry that it is, which
+    /// leaves the rest without meaning; empty: described here.
     std::string name;
-    std::string file;
-    std::vector<TransformKey> transform;
+    Material look;                  ///< its emission is that of the next two fields
+    float emission = 0.0f;          ///< [W/(m^2 sr)]
+    Spectrum emission_color{1.0f};  ///< multiplies it
+};
+
+/// A thing made of triangles.
+struct ObjectDescription {
+    std::string name;
+    SequenceParams file;  ///< a mesh: .obj or .ply
+    MaterialDescription material;
+    std::vector<TransformKey> transform;  ///< world from object
 };
 
 struct SceneDescription {
@@ -127,7 +139,8 @@ struct SceneDescription {
     std::vector<VolumeDescription> volumes;
     std::vector<ParticlesDescription> particles;
     std::vector<LightDescription> lights;
-    std::vector<MeshDescription> meshes;
+    std::vector<MaterialDescription> materials;
+    std::vector<ObjectDescription> objects;
     uint64_t hash = 0;  ///< of the resolved description, order of keys irrelevant
 };
 

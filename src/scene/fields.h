@@ -119,9 +119,10 @@ void describe(FieldVisitor& visitor, Phase& phase);
 void describe(FieldVisitor& visitor, Emission& emission);
 void describe(FieldVisitor& visitor, ParticlesDescription& particles);
 void describe(FieldVisitor& visitor, LightDescription& light);
-void describe(FieldVisitor& visitor, MeshDescription& mesh);
+void describe(FieldVisitor& visitor, MaterialDescription& material);
+void describe(FieldVisitor& visitor, ObjectDescription& object);
 void describe(FieldVisitor& visitor, TransformKey& key);
-/// The "transform" of volumes, lights and meshes.
+/// The "transform" of volumes, lights and objects.
 void visit_transform(FieldVisitor& visitor, std::vector<TransformKey>& keys);
 
 // Wrappers that bring a member to one of the forms above.

@@ -89,14 +89,6 @@ void describe(FieldVisitor& v, LightDescription& light)
     visit_transform(v, light.transform);
 }
 
-void describe(FieldVisitor& v, MeshDescription& mesh)
-{
-    visit(v, {.key = "name", .doc = "For messages and overrides"}, mesh.name);
-    visit(v, {.key = "file", .doc = "Mesh file, relative to the scene file", .required = true},
-          mesh.file);
-    visit_transform(v, mesh.transform);
-}
-
 void describe(FieldVisitor& v, TransformKey& key)
 {
     visit(v,

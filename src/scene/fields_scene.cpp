@@ -52,10 +52,15 @@ void describe(FieldVisitor& v, SceneDescription& scene)
                scene.particles);
     visit_list(v, {.key = "lights", .doc = "Light sources", .also = "light lamps"}, scene.lights);
     visit_list(v,
-               {.key = "meshes",
-                .doc = "Surfaces: read and checked; rendering them is not supported yet",
-                .also = "mesh objects"},
-               scene.meshes);
+               {.key = "materials",
+                .doc = "What objects are made of, for those that name them",
+                .also = "material"},
+               scene.materials);
+    visit_list(v,
+               {.key = "objects",
+                .doc = "Things with surfaces, for the path estimator",
+                .also = "object mesh meshes"},
+               scene.objects);
 }
 
 void describe(FieldVisitor& v, CameraDescription& camera)

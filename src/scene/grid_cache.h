@@ -7,6 +7,7 @@
 
 #include "scene/environment.h"
 #include "scene/prepare.h"
+#include "surfaces/instance_bvh.h"
 #include "volumes/bricks.h"
 #include "volumes/grid_source.h"
 
@@ -18,11 +19,13 @@ struct CachedGrid {
     std::shared_ptr<const ColorGrid> vector;
 };
 
-/// Grids and environment maps under a text that says everything they depend on: file, size and
-/// modification time; particle source version and raster settings; parameters and time.
+/// Grids, environment maps and meshes under a text that says everything they depend on: file, size
+/// and modification time; particle source version and raster settings; parameters and time.
 struct SceneCache::Impl {
     std::map<std::string, CachedGrid> grids;
     std::map<std::string, std::shared_ptr<const EnvironmentMap>> environments;
+    std::map<std::string, std::shared_ptr<const MeshBvh>> meshes;
+    std::shared_ptr<const InstanceBvh> instances;  ///< of the latest frame with surfaces
 
     /// Drops what is not wanted, before anything new is built: a sequence never holds two frames.
     void keep_only(const std::set<std::string>& wanted)

@@ -32,6 +32,7 @@ std::set<std::string> input_files(const SceneDescription& description, int frame
         const auto* cache = std::get_if<CacheParams>(&particles.source);
         if (cache && shown_particles.count(particles.name) > 0) add_sequence(cache->sequence);
     }
+    for (const ObjectDescription& object : description.objects) add_sequence(object.file);
     for (const LightDescription& light : description.lights) {
         if (light.image.empty()) continue;
         files.insert((std::filesystem::path(description.base_dir) / light.image).string());

@@ -63,12 +63,39 @@ std::optional<LightSample> sample(const QuadLight& light, Vec3 x, Vec2 u)
     return LightSample{wi, distance, light.radiance, distance2 / cos_area, false};
 }
 
+/// Uniform over the area.
+std::optional<LightSample> sample(const TriangleLight& light, Vec3 x, Vec2 u)
+{
+    const Vec3 normal_area = 0.5f * glm::cross(light.edge_u, light.edge_v);
+    const float root = std::sqrt(u.x);
+    Vec3 to_point =
+        light.corner + root * (1.0f - u.y) * light.edge_u + root * u.y * light.edge_v - x;
+    const float distance2 = glm::dot(to_point, to_point);
+    if (!(distance2 > 0.0f)) return std::nullopt;
+    const float distance = std::sqrt(distance2);
+    const Vec3 wi = to_point / distance;
+    const float facing = -glm::dot(normal_area, wi);  // area times cosine
+    const float cos_area = light.two_sided ? std::abs(facing) : facing;
+    if (!(cos_area > 0.0f)) return std::nullopt;
+    // The rounding of a long shadow ray's direction may carry its end through the triangle, too.
+    const float margin = light.offset + 0x1p-22f * distance;
+    to_point += std::copysign(margin, facing) * glm::normalize(normal_area);
+    const float end = glm::length(to_point);
+    if (!(glm::dot(to_point, wi) > 0.0f)) return std::nullopt;  // x is closer than the margin
+    return LightSample{to_point / end, end, light.radiance, distance2 / cos_area, false};
+}
+
 std::optional<LightHit> hit(const PointLight& /*light*/, Vec3 /*x*/, Vec3 /*wi*/)
 {
     return std::nullopt;
 }
 
 std::optional<LightHit> hit(const DistantLight& /*light*/, Vec3 /*x*/, Vec3 /*wi*/)
+{
+    return std::nullopt;
+}
+
+std::optional<LightHit> hit(const TriangleLight& /*light*/, Vec3 /*x*/, Vec3 /*wi*/)
 {
     return std::nullopt;
 }
@@ -125,6 +152,16 @@ float pdf(const QuadLight& light, Vec3 x, Vec3 wi)
     return sqr(found->distance) / cos_area;
 }
 
+float pdf(const TriangleLight& light, Vec3 x, Vec3 wi)
+{
+    // Of the plane: the caller knows that the ray meets the triangle.
+    const Vec3 normal_area = 0.5f * glm::cross(light.edge_u, light.edge_v);
+    const float facing = -glm::dot(normal_area, wi);
+    if (!(light.two_sided ? facing != 0.0f : facing > 0.0f)) return 0.0f;
+    const float distance = glm::dot(light.corner - x, normal_area) / -facing;
+    return sqr(distance) / std::abs(facing);
+}
+
 float power(const PointLight& light, float /*scene_radius*/)
 {
     return 4.0f * pi * luminance(light.intensity);
@@ -143,6 +180,12 @@ float power(const SphereLight& light, float /*scene_radius*/)
 float power(const QuadLight& light, float /*scene_radius*/)
 {
     const float area = glm::length(glm::cross(light.edge_u, light.edge_v));
+    return (light.two_sided ? 2.0f : 1.0f) * pi * area * luminance(light.radiance);
+}
+
+float power(const TriangleLight& light, float /*scene_radius*/)
+{
+    const float area = 0.5f * glm::length(glm::cross(light.edge_u, light.edge_v));
     return (light.two_sided ? 2.0f : 1.0f) * pi * area * luminance(light.radiance);
 }
 
@@ -168,6 +211,15 @@ Bounds3 bounds(const QuadLight& light)
     box.extend(light.corner + light.edge_u);
     box.extend(light.corner + light.edge_v);
     box.extend(light.corner + light.edge_u + light.edge_v);
+    return box;
+}
+
+Bounds3 bounds(const TriangleLight& light)
+{
+    Bounds3 box;
+    box.extend(light.corner);
+    box.extend(light.corner + light.edge_u);
+    box.extend(light.corner + light.edge_v);
     return box;
 }
 

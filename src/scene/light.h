@@ -42,6 +42,18 @@ struct QuadLight {
     bool two_sided = false;
 };
 
+/// Triangle of an emissive mesh: corner + u edge_u + v edge_v, u + v <= 1, emitting on the side
+/// that cross(edge_u, edge_v) points to (both sides if two_sided). Unlike lamps it is an obstacle,
+/// and rays find it by its mesh.
+struct TriangleLight {
+    Vec3 corner{0.0f};
+    Vec3 edge_u{1.0f, 0.0f, 0.0f};
+    Vec3 edge_v{0.0f, 0.0f, 1.0f};
+    Spectrum radiance{1.0f};
+    bool two_sided = false;
+    float offset = 0.0f;  ///< shadow rays end this far in front of it, clear of its mesh [m]
+};
+
 /// Light from all directions: a constant, or radiance times a latitude-longitude image.
 struct EnvironmentLight {
     Spectrum radiance{1.0f};
@@ -50,7 +62,7 @@ struct EnvironmentLight {
 };
 
 /// To add a light: write its struct, list it here, then fix the compile errors in light.cpp.
-using Light = std::variant<PointLight, DistantLight, SphereLight, QuadLight>;
+using Light = std::variant<PointLight, DistantLight, SphereLight, QuadLight, TriangleLight>;
 
 /// Light arriving at a point along one sampled direction.
 struct LightSample {
@@ -65,10 +77,12 @@ struct LightSample {
 /// reaches x.
 [[nodiscard]] std::optional<LightSample> sample_light(const Light& light, Vec3 x, Vec2 u);
 
-/// Density [1/sr] with which sample_light picks wi from x; 0 for delta lights and misses.
+/// Density [1/sr] with which sample_light picks wi from x; 0 for delta lights and misses. Whether a
+/// ray meets the triangle of a mesh is the caller's to know.
 [[nodiscard]] float light_pdf(const Light& light, Vec3 x, Vec3 wi);
 
-/// Where a ray from x along wi first meets an area light's emitting side.
+/// Where a ray from x along wi first meets an area light's emitting side. Not for the triangles of
+/// meshes, which rays meet otherwise: none there.
 struct LightHit {
     float distance = infinity;
     Spectrum Le{0.0f};

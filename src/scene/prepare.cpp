@@ -13,6 +13,7 @@
 #include "scene/grid_cache.h"
 #include "scene/prepare_camera.h"
 #include "scene/prepare_lights.h"
+#include "scene/prepare_surfaces.h"
 #include "scene/prepare_volumes.h"
 #include "volumes/grid_info.h"
 
@@ -252,11 +253,6 @@ SceneCache::~SceneCache() = default;
 Scene prepare_frame(const SceneDescription& description, int frame, const PrepareNeeds& needs,
                     SceneCache& cache, PrepareStats& stats)
 {
-    if (!description.meshes.empty()) {
-        throw Error(ExitCode::Input,
-                    fmt::format("{}: meshes are not supported yet; remove the [[meshes]] entries",
-                                description.path));
-    }
     const Preparation prepare{description, frame, needs, cache.impl(), stats};
     std::vector<GridPlan> plans;
     std::vector<size_t> shown;
@@ -286,6 +282,8 @@ Scene prepare_frame(const SceneDescription& description, int frame, const Prepar
     scene.shutter_open = description.camera.shutter_open;
     scene.shutter_close = description.camera.shutter_close;
     if (needs.velocity) prepare.add_next_frame(scene, shown);
+    prepare_surfaces(description, {frame, prepare.open(), prepare.close()}, cache.impl(), stats,
+                     scene);
     stats.brick_bytes = memory_of(cache.impl());
     warn_if_dark(scene);
     return scene;

@@ -18,11 +18,15 @@ struct PrepareStats {
     int grids_reused = 0;  ///< unchanged since an earlier frame of this run
     int64_t particles = 0;
     size_t brick_bytes = 0;
+    int meshes_built = 0;          ///< read, and their trees built
+    int meshes_reused = 0;         ///< unchanged since an earlier frame of this run
+    int instance_trees_built = 0;  ///< 1 if anything with a surface is new or has moved
+    size_t mesh_bytes = 0;
     int64_t non_finite_values = 0;  ///< set to 0 on load
     int64_t negative_values = 0;    ///< clamped to 0 on load
 };
 
-/// Keeps grids between frames, keyed by what they were built from.
+/// Keeps grids and meshes between frames, keyed by what they were built from.
 class SceneCache {
   public:
     SceneCache();

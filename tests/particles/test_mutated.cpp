@@ -1,4 +1,3 @@
-#include <cstring>
 #include <fstream>
 #include <sstream>
 
@@ -7,41 +6,18 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "core/rng.h"
 #include "core/sanitizers.h"
 #include "particles/cache.h"
 #include "particles/cache_samples.h"
 #include "particles/emitter.h"
 #include "particles/write_points.h"
+#include "support/damage.h"
 #include "support/temporary_folder.h"
 
 // Damaged files end in particles or in one Error that names the file; nothing crashes, hangs (the
 // test's own time limit) or asks for memory out of proportion to the file.
 namespace mote {
 namespace {
-
-/// Damage number `trial`: a truncation, an extreme integer, or random bytes.
-std::string damage(std::string bytes, uint32_t trial)
-{
-    Rng rng(trial, 0, Stream::Test, 0, 0);
-    const auto somewhere = [&](size_t room) {
-        return static_cast<size_t>(rng.uniform() * static_cast<float>(room));
-    };
-    const uint32_t kind = rng.next() % 4;
-    if (kind == 0) bytes.resize(somewhere(bytes.size()));
-    const size_t head = std::min<size_t>(bytes.size(), 4096);
-    if (kind == 1 && head > 8) {
-        static constexpr uint32_t extremes[] = {0xffffffffu, 0x7fffffffu, 0x80000000u, 0u,
-                                                1u << 20u};
-        const uint32_t value = extremes[rng.next() % 5];
-        std::memcpy(&bytes[somewhere(head - 4)], &value, 4);
-    }
-    const int flips = kind == 2 ? 3 : kind == 3 ? 20 : 0;
-    for (int i = 0; i < flips && !bytes.empty(); ++i) {
-        bytes[somewhere(kind == 2 ? head : bytes.size())] = static_cast<char>(rng.next());
-    }
-    return bytes;
-}
 
 struct Outcome {
     int read = 0;
@@ -53,7 +29,7 @@ Outcome read_damaged(const std::string& name, const std::string& whole, uint32_t
     const TemporaryFolder folder;
     Outcome outcome;
     for (uint32_t trial = 0; trial < trials; ++trial) {
-        const std::string path = folder.write(name, damage(whole, trial));
+        const std::string path = folder.write(name, test::damage(whole, trial));
         try {
             const ParticleSet set = read_particle_file(path, {}, 24.0);
             ++outcome.read;

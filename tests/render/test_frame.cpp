@@ -301,7 +301,7 @@ TEST(Motion, FollowsObjectsTheirVelocityAndTheCamera)
     EXPECT_EQ(motion_at_centre(), Vec2(0.0f));
 
     // 0.4 m to the right, 0.2 m up in a frame: u = +2, v = +1 pixels (depth within 0.1 m: 3 %).
-    scene.next = NextFrame{scene.camera, {slab.world_from_object}};
+    scene.next = NextFrame{scene.camera, {slab.world_from_object}, {}};
     scene.next->world_from_object[0].keys[0].translate += Vec3d(0.4, 0.2, 0.0);
     EXPECT_NEAR(motion_at_centre().x, 2.0f, 0.06f);
     EXPECT_NEAR(motion_at_centre().y, 1.0f, 0.03f);
@@ -328,7 +328,7 @@ TEST(Motion, BackgroundMovesWithTheCamerasRotation)
 {
     Scene scene;
     scene.camera = front_camera(24, 24);
-    scene.next = NextFrame{scene.camera, {}};
+    scene.next = NextFrame{scene.camera, {}, {}};
     Trs& pose = scene.next->camera.world_from_camera.keys[0];
     pose.translate.x += 3.0;                                   // no parallax at infinity
     pose.rotate = glm::angleAxis(0.02, Vec3d(0.0, 1.0, 0.0));  // to the left: the sky goes right

@@ -204,8 +204,7 @@ transform = { rotate = [0, 90, 0] }
 
 TEST(Prepare, SaysWhatIsMissing)
 {
-    EXPECT_NE(error_of("[[meshes]]\nfile = \"a.obj\"").find("meshes are not supported yet"),
-              std::string::npos);
+    EXPECT_NE(error_of("[[objects]]\nfile = \"none.obj\"").find("none.obj"), std::string::npos);
     EXPECT_NE(error_of("[[volumes]]\nfile = \"none.vdb\"").find("none.vdb"), std::string::npos);
     EXPECT_NE(error_of("[[particles]]\nname = \"p\"\nfile = \"none.ply\"\n[[volumes]]\nparticles = "
                        "\"p\"")

@@ -57,7 +57,8 @@ TEST(SceneErrors, NamePlaceKeyAndRemedy)
         {"[output]\naovs = [\"z\"]",
          "scene.toml:2:9: error: unknown \"z\" in \"aovs\" in [output] (did you mean \"Z\"?); "
          "known: Z, albedo, motion, variance, samples, volume_direct, volume_indirect, "
-         "volume_emission, background, transmittance, optical_depth, volume_Z, restir, cost, work"},
+         "volume_emission, background, transmittance, optical_depth, volume_Z, restir, cost, work, "
+         "direct, indirect, emission, N, P"},
         {"[output]\naovs = [\"Z\", \"Z\"]",
          "scene.toml:2:14: error: \"Z\" is twice in \"aovs\" in [output]"},
         {"[output]\npath = \"a\\u0000b\"",
@@ -109,6 +110,23 @@ TEST(SceneErrors, NamePlaceKeyAndRemedy)
          "scene.toml:1:1: error: \"position\" and \"look_at\" of the camera are the same point"},
         {"[camera]\nup = [0, 0, 1]",
          "scene.toml:1:1: error: \"up\" of the camera points along its view; choose another"},
+        {"[[objects]]", "scene.toml:1:1: error: missing key \"file\" in [objects]"},
+        {"[[objects]]\nfile = \"a.obj\"\nmaterial = \"gld\"\n[[materials]]\nname = \"gold\"",
+         "scene.toml:3:12: error: no [[materials]] entry is named \"gld\" (did you mean "
+         "\"gold\"?)"},
+        {"[[objects]]\nfile = \"a.obj\"\nmaterial = { name = \"gold\", color = 1 }\n"
+         "[[materials]]\nname = \"gold\"",
+         "scene.toml:3:12: error: \"material\" in [objects] either names a [[materials]] entry or "
+         "describes one"},
+        {"[[objects]]\nfile = \"a.obj\"\nmaterial = { ior = 1.3 }",
+         "scene.toml:3:14: error: \"ior\" in [objects.material] has no meaning with \"diffuse\"; "
+         "it is for: dielectric"},
+        {"[[materials]]\ncolor = 2",
+         "scene.toml:1:1: error: a material needs a \"name\" to be used by\n"
+         "scene.toml:2:9: error: \"color\" in [materials] is 2, allowed: 0 to 1"},
+        {"[render]\nestimator = \"restir\"\n[[objects]]\nfile = \"a.obj\"",
+         "scene.toml:2:13: error: estimator \"restir\" cannot render [[objects]] yet; use "
+         "\"path\""},
         {"first_frame = 5\nlast_frame = 4",
          "scene.toml:2:14: error: \"last_frame\" is 4, before \"first_frame\" 5"},
         {"[render]\nwidth = 65536\nheight = 65536",

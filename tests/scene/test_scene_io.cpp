@@ -83,8 +83,19 @@ color = 0.5
 type = "sphere"
 count = 1000
 spread = [1, 2, 3]
-[[meshes]]
+[[materials]]
+name = "gold"
+type = "metallic_roughness"
+color = [1, 0.8, 0.3]
+metallic = 1
+roughness = 0.2
+[[objects]]
 file = "box.obj"
+material = "gold"
+[[objects]]
+file = { path = "lamp.####.ply", offset = 10 }
+material = { color = 0.5, emission = 3, emission_color = [1, 0.5, 0], two_sided = false }
+transform = { translate = [0, 2, 0] }
 )");
     EXPECT_EQ(scene.first_frame, -5);
     EXPECT_EQ(scene.camera.position, Vec3d(1.0, 2.5, 3.0));
@@ -124,7 +135,15 @@ file = "box.obj"
     EXPECT_EQ(ring.mass, 3.0f);
     EXPECT_EQ(ring.color, Spectrum(0.5f));
     EXPECT_EQ(scene.lights[0].count, 1000);
-    EXPECT_EQ(scene.meshes[0].file, "box.obj");
+    EXPECT_EQ(scene.materials[0].look.kind, MaterialKind::MetallicRoughness);
+    EXPECT_EQ(scene.materials[0].look.roughness, 0.2f);
+    EXPECT_EQ(scene.objects[0].file.pattern, "box.obj");
+    EXPECT_EQ(scene.objects[0].material.name, "gold");
+    EXPECT_EQ(scene.objects[1].file.offset, 10);
+    EXPECT_EQ(scene.objects[1].material.look.base_color, Spectrum(0.5f));
+    EXPECT_EQ(scene.objects[1].material.emission_color, Spectrum(1.0f, 0.5f, 0.0f));
+    EXPECT_FALSE(scene.objects[1].material.look.two_sided);
+    EXPECT_EQ(scene.objects[1].transform.size(), 1u);
 }
 
 TEST(SceneIo, TransformKeysCarryWhatTheyLeaveOut)

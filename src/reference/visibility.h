@@ -1,0 +1,14 @@
+#pragma once
+
+#include "core/rng.h"
+#include "reference/scatter_event.h"
+#include "reference/trace_context.h"
+
+namespace mote {
+
+/// Unbiased transmittance [0,1] between an event and a point `distance` along wi (infinity: all the
+/// way); 0 if a surface is in between.
+[[nodiscard]] float estimate_visibility(const TraceContext& context, const ScatterEvent& event,
+                                        Vec3 wi, float distance, Rng& rng);
+
+}  // namespace mote

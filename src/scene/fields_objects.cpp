@@ -1,0 +1,93 @@
+#include "scene/fields.h"
+
+namespace mote {
+namespace {
+
+constexpr std::array material_names = {"diffuse", "metallic_roughness", "dielectric"};
+
+}  // namespace
+
+void describe(FieldVisitor& v, MaterialDescription& material)
+{
+    Material& look = material.look;
+    visit(v,
+          {.key = "name",
+           .doc = "The name that objects use; in an object's `material`: the [[materials]] entry "
+                  "to use, without other keys",
+           .also = "use"},
+          material.name);
+    visit_choice(v,
+                 {.key = "type",
+                  .doc = "diffuse is matt; metallic_roughness is plastic or metal, as in glTF; "
+                         "dielectric is glass or water",
+                  .also = "kind"},
+                 look.kind, material_names);
+    v.select(material_names[static_cast<size_t>(look.kind)]);
+    visit(v,
+          {.key = "color",
+           .doc = "Share of the light that comes back; dielectric: that passes. One number or RGB",
+           .range = between(0, 1),
+           .also = "base_color albedo reflectance colour tint",
+           .scalar_ok = true},
+          look.base_color);
+    visit(v,
+          {.key = "metallic",
+           .doc = "0: plastic, 1: metal",
+           .range = between(0, 1),
+           .also = "metalness",
+           .used_by = "metallic_roughness"},
+          look.metallic);
+    visit(v,
+          {.key = "roughness",
+           .doc = "0: as good as smooth, 1: very rough",
+           .range = between(0, 1),
+           .also = "alpha glossiness",
+           .used_by = "metallic_roughness dielectric"},
+          look.roughness);
+    visit(v,
+          {.key = "ior",
+           .doc = "Index of refraction, inside over outside",
+           .range = between(1, 4),
+           .also = "eta index",
+           .used_by = "dielectric"},
+          look.ior);
+    visit(v,
+          {.key = "emission",
+           .doc = "Radiance given off; such objects stand still while the shutter is open",
+           .unit = "W/(m^2 sr)",
+           .range = between(0, 1e20),
+           .also = "strength emissive radiance"},
+          material.emission);
+    visit(v,
+          {.key = "emission_color",
+           .doc = "Multiplies `emission`; one number or RGB",
+           .range = between(0, 1e6),
+           .scalar_ok = true},
+          material.emission_color);
+    visit(v,
+          {.key = "two_sided",
+           .doc = "Both sides look alike; else the back is black and dark. Of no meaning for glass",
+           .also = "doubleSided double_sided"},
+          look.two_sided);
+}
+
+void describe(FieldVisitor& v, ObjectDescription& object)
+{
+    visit(v, {.key = "name", .doc = "For messages and overrides"}, object.name);
+    visit_table(v,
+                {.key = "file",
+                 .doc = "Mesh (.obj, .ply), one file or a sequence; text alone is its `path`",
+                 .required = true,
+                 .also = "mesh path obj ply",
+                 .shorthand = "path"},
+                object.file);
+    visit_table(v,
+                {.key = "material",
+                 .doc = "What it is made of; text alone is the `name` of a [[materials]] entry",
+                 .also = "color",
+                 .shorthand = "name"},
+                object.material);
+    visit_transform(v, object.transform);
+}
+
+}  // namespace mote

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "surfaces/mesh.h"
+
+namespace mote {
+
+/// One mesh file, told apart by its ending: Wavefront .obj (v, vn, f; materials are the scene's
+/// business) or .ply (ascii and binary; x y z, optional nx ny nz, faces of any size). Finished,
+/// with what was left out told as a warning. Throws Error(Input) naming the file and, for text,
+/// line and column.
+[[nodiscard]] Mesh load_mesh(const std::string& path);
+
+/// The readers, one per format; their meshes are not finished yet.
+[[nodiscard]] Mesh read_obj(const std::string& path);
+[[nodiscard]] Mesh read_ply_mesh(const std::string& path);
+
+}  // namespace mote

@@ -1,0 +1,87 @@
+#include "surfaces/mesh.h"
+
+#include <fmt/format.h>
+
+#include "core/error.h"
+
+namespace mote {
+namespace {
+
+/// Embree numbers primitives in 32 bits, and so does everything here.
+constexpr size_t max_triangles = size_t{1} << 31;
+
+bool is_usable(const Mesh& mesh, size_t triangle, MeshRepairs& repairs)
+{
+    const glm::uvec3 t = mesh.triangles[triangle];
+    for (int corner = 0; corner < 3; ++corner) {
+        if (is_finite(mesh.positions[t[corner]])) continue;
+        ++repairs.non_finite;
+        return false;
+    }
+    const Vec3 normal = area_normal(mesh, triangle);
+    const float area2 = glm::dot(normal, normal);
+    if (area2 > 0.0f && std::isfinite(area2)) return true;
+    ++repairs.degenerate;
+    return false;
+}
+
+void finish_normals(Mesh& mesh, MeshRepairs& repairs)
+{
+    for (Vec3& normal : mesh.normals) {
+        const float length2 = glm::dot(normal, normal);
+        if (length2 > 1e-20f && length2 < 1e20f) {
+            normal /= std::sqrt(length2);
+        } else {
+            if (length2 != 0.0f) ++repairs.bad_normals;
+            normal = Vec3(0.0f);
+        }
+    }
+}
+
+}  // namespace
+
+void add_polygon(Mesh& mesh, std::span<const uint32_t> corners)
+{
+    for (size_t i = 2; i < corners.size(); ++i) {
+        mesh.triangles.emplace_back(corners[0], corners[i - 1], corners[i]);
+    }
+}
+
+MeshRepairs finish_mesh(Mesh& mesh, const std::string& file)
+{
+    MeshRepairs repairs;
+    if (mesh.triangles.size() >= max_triangles) {
+        throw Error(ExitCode::Input, fmt::format("{}: {} triangles are more than 2^31", file,
+                                                 mesh.triangles.size()));
+    }
+    size_t kept = 0;
+    for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+        const glm::uvec3 t = mesh.triangles[i];
+        const uint32_t last = std::max(t.x, std::max(t.y, t.z));
+        if (last >= mesh.positions.size()) {
+            throw Error(ExitCode::Input,
+                        fmt::format("{}: triangle {} uses vertex {}, but there are only {}", file,
+                                    i, last, mesh.positions.size()));
+        }
+        if (is_usable(mesh, i, repairs)) mesh.triangles[kept++] = t;
+    }
+    mesh.triangles.resize(kept);
+    if (kept == 0) {
+        throw Error(ExitCode::Input,
+                    fmt::format("{}: holds no triangle that can be drawn ({} with vertices that "
+                                "are not finite, {} without area)",
+                                file, repairs.non_finite, repairs.degenerate));
+    }
+    if (mesh.normals.size() != mesh.positions.size()) mesh.normals.clear();
+    finish_normals(mesh, repairs);
+    for (Vec3& p : mesh.positions) {
+        if (!is_finite(p)) p = Vec3(0.0f);  // of no triangle any more
+    }
+    mesh.bounds = {};
+    for (const glm::uvec3& t : mesh.triangles) {
+        for (int corner = 0; corner < 3; ++corner) mesh.bounds.extend(mesh.positions[t[corner]]);
+    }
+    return repairs;
+}
+
+}  // namespace mote

@@ -1,0 +1,125 @@
+#include <istream>
+#include <map>
+#include <streambuf>
+#include <tuple>
+
+#include <fmt/format.h>
+#include <tiny_obj_loader.h>
+
+#include "particles/input_file.h"
+#include "particles/text_row.h"
+#include "surfaces/load_mesh.h"
+
+namespace mote {
+namespace {
+
+/// Feeds tinyobjloader line by line, so that the file's line number is that of the line at hand
+/// whenever it calls back. It reads what is no number as 0: such lines are refused here.
+class ObjLines : public std::streambuf {
+  public:
+    explicit ObjLines(InputFile& file) : file_(file) {}
+
+  protected:
+    int_type underflow() override
+    {
+        std::string_view line;
+        if (!file_.next_line(line)) return traits_type::eof();
+        line_.assign(line);
+        check_numbers();
+        line_.push_back('\n');
+        setg(line_.data(), line_.data(), line_.data() + line_.size());
+        return traits_type::to_int_type(*gptr());
+    }
+
+  private:
+    void check_numbers() const
+    {
+        TextRow row(file_.path(), file_.line_number(), line_);
+        std::string_view token;
+        if (!row.next(token) || (token != "v" && token != "vn")) return;
+        for (int i = 0; i < 3; ++i) {
+            if (!row.next(token)) row.fail("three numbers are needed");
+            (void)row.number(token);
+        }
+    }
+
+    InputFile& file_;
+    std::string line_;
+};
+
+/// Position and normal that one corner of a face names; -1: no normal.
+using Corner = std::pair<int64_t, int64_t>;
+
+/// A mesh being read. OBJ numbers positions and normals apart; each pair that occurs is a vertex.
+struct ObjBuild {
+    const InputFile& file;
+    std::vector<Vec3> positions, normals;
+    std::map<Corner, uint32_t> vertex_of;
+    std::vector<uint32_t> polygon;
+    Mesh mesh;
+
+    /// 0-based index from OBJ's: 1 is the first, -1 the latest so far.
+    [[nodiscard]] int64_t resolve(int index, size_t count, const char* what) const
+    {
+        const auto size = static_cast<int64_t>(count);
+        const int64_t resolved = index > 0 ? index - int64_t{1} : size + index;
+        if (index != 0 && resolved >= 0 && resolved < size) return resolved;
+        throw Error(ExitCode::Input,
+                    fmt::format("{}:{}:1: the face names {} {}, but there are {} so far",
+                                file.path(), file.line_number(), what, index, count));
+    }
+
+    void add_face(std::span<const tinyobj::index_t> corners)
+    {
+        polygon.clear();
+        for (const tinyobj::index_t& corner : corners) {
+            const int64_t p = resolve(corner.vertex_index, positions.size(), "vertex");
+            const int64_t n = corner.normal_index == 0
+                                  ? -1
+                                  : resolve(corner.normal_index, normals.size(), "normal");
+            const auto next = static_cast<uint32_t>(mesh.positions.size());
+            const auto [entry, is_new] = vertex_of.emplace(Corner(p, n), next);
+            if (is_new) {
+                mesh.positions.push_back(positions[static_cast<size_t>(p)]);
+                mesh.normals.push_back(n < 0 ? Vec3(0.0f) : normals[static_cast<size_t>(n)]);
+            }
+            polygon.push_back(entry->second);
+        }
+        add_polygon(mesh, polygon);
+    }
+};
+
+ObjBuild& build_of(void* user)
+{
+    return *static_cast<ObjBuild*>(user);
+}
+
+}  // namespace
+
+Mesh read_obj(const std::string& path)
+{
+    InputFile file(path);
+    ObjLines lines(file);
+    std::istream stream(&lines);
+    stream.exceptions(std::ios::badbit);  // hands on what ObjLines throws
+
+    ObjBuild build{file, {}, {}, {}, {}, {}};
+    tinyobj::callback_t on;
+    on.vertex_cb = [](void* user, float x, float y, float z, float) {
+        build_of(user).positions.emplace_back(x, y, z);
+    };
+    on.normal_cb = [](void* user, float x, float y, float z) {
+        build_of(user).normals.emplace_back(x, y, z);
+    };
+    on.index_cb = [](void* user, tinyobj::index_t* corners, int count) {
+        build_of(user).add_face({corners, static_cast<size_t>(count)});
+    };
+    std::string error;
+    if (!tinyobj::LoadObjWithCallback(stream, on, &build, nullptr, nullptr, &error)) {
+        throw Error(ExitCode::Input, fmt::format("{}: {}", path, printable(error)));
+    }
+    if (build.normals.empty()) build.mesh.normals.clear();
+    return std::move(build.mesh);
+}
+
+}  // namespace mote

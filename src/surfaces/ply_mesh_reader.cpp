@@ -1,0 +1,148 @@
+#include "particles/ply_rows.h"
+#include "surfaces/load_mesh.h"
+
+namespace mote {
+namespace {
+
+/// Where a vertex property goes: component 0 to 2 of the position, 3 to 5 of the normal; -1:
+/// nowhere.
+std::vector<int> vertex_targets(const std::string& path, const PlyElement& element)
+{
+    static constexpr const char* names[] = {"x", "y", "z", "nx", "ny", "nz"};
+    std::vector<int> targets(element.properties.size(), -1);
+    bool found[6] = {};
+    for (size_t i = 0; i < targets.size(); ++i) {
+        const PlyProperty& property = element.properties[i];
+        for (int c = 0; c < 6; ++c) {
+            if (property.list_count || property.name != names[c]) continue;
+            targets[i] = c;
+            found[c] = true;
+        }
+    }
+    if (!found[0] || !found[1] || !found[2]) {
+        throw Error(ExitCode::Input,
+                    fmt::format("{}: element \"vertex\" needs the properties x, y and z", path));
+    }
+    if (found[3] && found[4] && found[5]) return targets;
+    for (int& target : targets) target = target < 3 ? target : -1;
+    return targets;
+}
+
+/// The list of a face's corners.
+size_t corner_list(const std::string& path, const PlyElement& element)
+{
+    for (size_t i = 0; i < element.properties.size(); ++i) {
+        const PlyProperty& property = element.properties[i];
+        const bool is_named = property.name == "vertex_indices" || property.name == "vertex_index";
+        if (property.list_count && is_named) return i;
+    }
+    throw Error(ExitCode::Input,
+                fmt::format("{}: element \"face\" needs the list \"vertex_indices\"", path));
+}
+
+struct Reader {
+    InputFile& file;
+    PlyFormat format;
+    Mesh mesh;
+
+    [[nodiscard]] bool is_big_endian() const { return format == PlyFormat::BigEndian; }
+    void read_vertices(const PlyElement& element);
+    void read_faces(const PlyElement& element);
+};
+
+void Reader::read_vertices(const PlyElement& element)
+{
+    const std::vector<int> targets = vertex_targets(file.path(), element);
+    const bool has_normals = std::find(targets.begin(), targets.end(), 3) != targets.end();
+    float values[6] = {};
+    const auto store = [&](size_t property, double value) {
+        if (targets[property] >= 0) values[targets[property]] = static_cast<float>(value);
+    };
+    const auto finish = [&] {
+        mesh.positions.emplace_back(values[0], values[1], values[2]);
+        if (has_normals) mesh.normals.emplace_back(values[3], values[4], values[5]);
+    };
+    if (format == PlyFormat::Ascii) {
+        for_each_ply_line(file, element, [&](uint64_t, TextRow& line) {
+            walk_ply_line(line, element, store, [](size_t, double) {});
+            finish();
+        });
+        return;
+    }
+    for (uint64_t i = 0; i < element.count; ++i) {
+        walk_ply_row(
+            file, element, is_big_endian(),
+            [&](size_t property, const unsigned char* bytes) {
+                store(property,
+                      load_scalar(bytes, element.properties[property].type, is_big_endian()));
+            },
+            [&](size_t property, uint64_t entries) {
+                file.skip(entries * scalar_size(element.properties[property].type));
+            });
+        finish();
+    }
+}
+
+void Reader::read_faces(const PlyElement& element)
+{
+    const size_t list = corner_list(file.path(), element);
+    std::vector<uint32_t> corners;
+    const auto add = [&](double index) {
+        if (!(index >= 0.0 && index < 4294967295.0)) {
+            throw Error(ExitCode::Input,
+                        fmt::format("{}: a face names vertex {}", file.path(), index));
+        }
+        corners.push_back(static_cast<uint32_t>(index));
+    };
+    if (format == PlyFormat::Ascii) {
+        for_each_ply_line(file, element, [&](uint64_t, TextRow& line) {
+            corners.clear();
+            walk_ply_line(
+                line, element, [](size_t, double) {},
+                [&](size_t property, double index) {
+                    if (property == list) add(index);
+                });
+            add_polygon(mesh, corners);
+        });
+        return;
+    }
+    const ScalarType type = element.properties[list].type;
+    for (uint64_t i = 0; i < element.count; ++i) {
+        corners.clear();
+        walk_ply_row(
+            file, element, is_big_endian(), [](size_t, const unsigned char*) {},
+            [&](size_t property, uint64_t entries) {
+                const size_t size = scalar_size(element.properties[property].type);
+                if (property != list) {
+                    file.skip(entries * size);
+                    return;
+                }
+                for (uint64_t k = 0; k < entries; ++k) {
+                    add(load_scalar(file.take(size), type, is_big_endian()));
+                }
+            });
+        add_polygon(mesh, corners);
+    }
+}
+
+}  // namespace
+
+Mesh read_ply_mesh(const std::string& path)
+{
+    InputFile file(path);
+    const PlyHeader header = read_ply_header(file);
+    Reader reader{file, header.format, {}};
+    for (const PlyElement& element : header.elements) {
+        check_ply_claim(file, element, header.format);
+        if (element.name == "vertex") {
+            reader.read_vertices(element);
+        } else if (element.name == "face") {
+            reader.read_faces(element);
+        } else {
+            skip_ply_element(file, element, header.format);
+        }
+    }
+    return std::move(reader.mesh);
+}
+
+}  // namespace mote

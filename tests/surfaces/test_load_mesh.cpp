@@ -1,0 +1,139 @@
+#include <gtest/gtest.h>
+
+#include "support/expect_error.h"
+#include "support/temporary_folder.h"
+#include "surfaces/load_mesh.h"
+#include "surfaces/meshes.h"
+
+namespace mote {
+namespace {
+
+Mesh load(const std::string& name, const std::string& bytes)
+{
+    const TemporaryFolder folder;
+    return load_mesh(folder.write(name, bytes));
+}
+
+/// Total area; tells shape and order of corners.
+Vec3 area_of(const Mesh& mesh)
+{
+    Vec3 sum(0.0f);
+    for (size_t i = 0; i < mesh.triangles.size(); ++i) sum += glm::abs(area_normal(mesh, i));
+    return 0.5f * sum;
+}
+
+TEST(LoadMesh, EveryFormatReadsWhatWasWritten)
+{
+    const Mesh box = test::box_mesh(Vec3(-1.0f, 0.0f, 0.5f), Vec3(1.0f, 3.0f, 1.0f));
+    const std::pair<const char*, std::string> files[] = {
+        {"a.obj", test::obj_text(box)},
+        {"a.PLY", test::ply_bytes(box, false)},
+        {"b.ply", test::ply_bytes(box, true)},
+    };
+    for (const auto& [name, bytes] : files) {
+        const Mesh mesh = load(name, bytes);
+        EXPECT_EQ(mesh.triangles.size(), 12u) << name;
+        EXPECT_EQ(mesh.bounds.lo, Vec3(-1.0f, 0.0f, 0.5f)) << name;
+        EXPECT_EQ(mesh.bounds.hi, Vec3(1.0f, 3.0f, 1.0f)) << name;
+        EXPECT_EQ(area_of(mesh), Vec3(3.0f, 2.0f, 12.0f)) << name;
+        EXPECT_TRUE(mesh.normals.empty()) << name;
+        for (size_t i = 0; i < 12; ++i) {
+            EXPECT_EQ(area_normal(mesh, i), area_normal(box, i)) << name;
+        }
+    }
+}
+
+TEST(LoadMesh, ObjPolygonsNegativeIndicesAndNormals)
+{
+    const Mesh mesh = load("a.obj",
+                           "mtllib no.mtl\nv 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nvt 0 0\n"
+                           "vn 0 0 2\nusemtl red\nf -4/1/-1 -3/1/1 3/1/1 4/1/1\n");
+    ASSERT_EQ(mesh.triangles.size(), 2u);
+    EXPECT_EQ(area_of(mesh), Vec3(0.0f, 0.0f, 2.0f));
+    ASSERT_EQ(mesh.normals.size(), 4u);
+    EXPECT_EQ(mesh.normals[0], Vec3(0.0f, 0.0f, 1.0f));
+}
+
+TEST(LoadMesh, BigEndianPlyWithOtherElementsAndProperties)
+{
+    std::string bytes =
+        "ply\nformat binary_big_endian 1.0\nelement face 1\nproperty list uchar uchar "
+        "vertex_index\nproperty uchar flags\nelement vertex 3\nproperty double x\nproperty uchar "
+        "red\nproperty double y\nproperty double z\nend_header\n";
+    bytes += std::string("\x03\x00\x01\x02\x07", 5);
+    const auto number = [&](bool is_one) {
+        bytes += std::string(is_one ? "\x3f\xf0" : "\0\0", 2) + std::string(6, '\0');
+    };
+    for (int vertex = 0; vertex < 3; ++vertex) {
+        number(vertex == 1);
+        bytes += 'r';
+        number(vertex == 2);
+        number(false);
+    }
+    const Mesh mesh = load("a.ply", bytes);
+    ASSERT_EQ(mesh.triangles.size(), 1u);
+    EXPECT_EQ(area_normal(mesh, 0), Vec3(0.0f, 0.0f, 1.0f));
+}
+
+TEST(LoadMesh, TrianglesThatCannotBeDrawnAreLeftOut)
+{
+    const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1e999 0 0\nv 2 0 0\nvn 0 0 0\n";
+    const Mesh mesh = load("a.obj", vertices + "f 1 2 3\nf 1 2 4\nf 1 2 5\nf 1 1 2\nf 1 2\n");
+    EXPECT_EQ(mesh.triangles.size(), 1u);
+    EXPECT_EQ(mesh.bounds.hi, Vec3(1.0f, 1.0f, 0.0f));
+
+    Mesh counted;
+    counted.positions = {Vec3(0.0f), Vec3(1.0f, 0.0f, 0.0f), Vec3(0.0f, 1.0f, 0.0f),
+                         Vec3(std::nanf(""), 0.0f, 0.0f)};
+    counted.normals = {Vec3(0.0f), Vec3(3.0f, 0.0f, 0.0f), Vec3(infinity), Vec3(0.0f, 1.0f, 0.0f)};
+    counted.triangles = {{0, 1, 2}, {0, 1, 3}, {1, 1, 2}};
+    const MeshRepairs repairs = finish_mesh(counted, "here");
+    EXPECT_EQ(repairs.non_finite, 1u);
+    EXPECT_EQ(repairs.degenerate, 1u);
+    EXPECT_EQ(repairs.bad_normals, 1u);
+    EXPECT_EQ(counted.normals[1], Vec3(1.0f, 0.0f, 0.0f));
+}
+
+TEST(LoadMesh, ErrorsNameFilePlaceAndReason)
+{
+    const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    const struct {
+        const char* name;
+        std::string bytes;
+        const char* message;
+    } cases[] = {
+        {"a.obj", corners + "f 1 2 4\n", "a.obj:4:1: the face names vertex 4, but there are 3"},
+        {"a.obj", corners + "f 1 2 0\n", "a.obj:4:1: the face names vertex 0"},
+        {"a.obj", corners + "f 1 2 -4\n", "a.obj:4:1: the face names vertex -4"},
+        {"a.obj", corners + "f 1//1 2//1 3//1\n", "a.obj:4:1: the face names normal 1"},
+        {"a.obj", "v 0 0 0\nv 1 x 0\n", "a.obj:2:5: \"x\" is not a number"},
+        {"a.obj", "v 0 0\n", "a.obj:1:6: three numbers are needed"},
+        {"a.obj", corners + "f 1 1 2\n", "holds no triangle that can be drawn"},
+        {"a.obj", "", "holds no triangle"},
+        {"a.fbx", "", "export it as .obj or .ply"},
+        {"a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n0\n",
+         "needs the properties x, y and z"},
+        {"a.ply",
+         "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty "
+         "float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n3 0 "
+         "0 1\n",
+         "triangle 0 uses vertex 1, but there are only 1"},
+        {"a.ply",
+         "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int "
+         "vertex_indices\nend_header\n3 0 -1 1\n",
+         "a face names vertex -1"},
+        {"a.ply",
+         "ply\nformat ascii 1.0\nelement face 2\nproperty list uchar int "
+         "vertex_indices\nend_header\n3 0 0 0\n",
+         "truncated: it ends after 1 of 2 rows"},
+    };
+    for (const auto& c : cases) {
+        const std::string message = error_message([&] { (void)load(c.name, c.bytes); });
+        EXPECT_NE(message.find(c.message), std::string::npos) << message;
+    }
+    EXPECT_NE(error_message([] { (void)load_mesh("/nowhere/a.obj"); }).find("/nowhere/a.obj: No"),
+              std::string::npos);
+}
+
+}  // namespace
+}  // namespace mote
