@@ -181,6 +181,7 @@ void render_all(Run& run, Progress& progress)
         } else {
             if (!run.is_warm) warm_up(files.frame, run);
             run.is_warm = true;
+            if (files.frame == run.files.back().frame) run.history.expect_no_more();
             render_one(files, run, progress, record);
         }
         run.records.push_back(std::move(record));

@@ -122,6 +122,11 @@ bool render_paths(const FrameInputs& frame, const FrameControl& control, Film& f
 FrameHistory::FrameHistory() : impl_(std::make_unique<Impl>()) {}
 FrameHistory::~FrameHistory() = default;
 
+void FrameHistory::expect_no_more()
+{
+    impl_->is_last = true;
+}
+
 bool uses_history(const RenderDescription& render)
 {
     if (render.estimator != EstimatorKind::Restir) return false;

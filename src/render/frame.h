@@ -47,6 +47,9 @@ class FrameHistory {
     ~FrameHistory();
     FrameHistory(const FrameHistory&) = delete;
     FrameHistory& operator=(const FrameHistory&) = delete;
+    /// The frame rendered next is the last one: it keeps nothing that only a following frame would
+    /// use (some 300 bytes per pixel).
+    void expect_no_more();
     struct Impl;
     [[nodiscard]] Impl& impl() { return *impl_; }
 

@@ -96,12 +96,13 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
         history.before = {};
         const Camera& camera = scene.camera;
         if (!plan.accumulates) history.pixels = {};
-        if (plan.keeps_passes && !plan.accumulates) {
+        const bool keeps_passes = plan.accumulates || (plan.keeps_passes && !history.is_last);
+        if (keeps_passes && !plan.accumulates) {
             history.pixels = Buffer2D<PixelFilm>(camera.width, camera.height);
         }
         finished =
             render_independent_passes(inputs, control, film, counts, stats.dropped_non_finite,
-                                      plan.keeps_passes ? &history.pixels : nullptr);
+                                      keeps_passes ? &history.pixels : nullptr);
     }
     history.last = keeps_history ? domain : FrameDomain{};
     stats.truncated_paths = counts.truncated;

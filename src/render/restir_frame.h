@@ -17,6 +17,7 @@ struct FrameHistory::Impl {
     FrameDomain last;            ///< of the frame before, if a next one may reuse its samples
     FinishedPass before;         ///< its last pass, if that kept samples
     Buffer2D<PixelFilm> pixels;  ///< all passes since something changed, if they are accumulated
+    bool is_last = false;        ///< no frame follows
 };
 
 /// All passes of a frame by the ReSTIR estimator; builds the light caches, or takes those of the
