@@ -66,7 +66,8 @@ TEST(StressNumbers, PhaseFunctions)
 
 TEST(StressNumbers, Lights)
 {
-    const Scene scene = test::lit_by_all(test::clumps(4.0f));
+    Scene scene = test::lit_by_all(test::clumps(4.0f));
+    scene.lights.push_back(TriangleLight{});
     for (const Light& light : scene.lights) {
         for (const Vec2& u : pairs()) {
             for (const Vec3& x : {Vec3(0.0f), Vec3(0.2f, 0.1f, 0.1f), Vec3(1e6f), Vec3(1e-6f)}) {
