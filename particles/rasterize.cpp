@@ -306,7 +306,9 @@ ParticleGrids rasterize_checked(const ParticleSet& particles, const RasterizePar
     const RasterPlan plan = make_raster_plan(particles, params);
     if (plan.invalid > 0) {
         spdlog::warn(
-            "{} of {} particles left out: negative masses or radii, or values that are not finite",
+            "{} of {} particles left out: negative masses or radii, or values that are not finite "
+            "or "
+            "beyond 1e14 (masses: per volume of a voxel, in kg/m^3)",
             plan.invalid, particles.size());
     }
     const ChannelList channels = make_channels(particles, params.channels);

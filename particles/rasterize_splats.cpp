@@ -24,7 +24,10 @@ bool is_usable(const ParticleSet& particles, const SplatRules& rules, size_t i)
     const double density = static_cast<double>(mass) * rules.inv_voxel_volume;
     if (!(mass > 0.0f) || !(density <= static_cast<double>(largest))) return false;
     if (!is_finite(particles.position[i])) return false;
-    if (!particles.radius.empty() && !(particles.radius[i] >= 0.0f)) return false;
+    if (!particles.radius.empty()) {
+        const float radius = particles.radius[i];
+        if (!(radius >= 0.0f && radius < infinity)) return false;
+    }
     if (rules.use_velocity && !particles.velocity.empty() && !is_summable(particles.velocity[i])) {
         return false;
     }

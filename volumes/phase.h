@@ -29,7 +29,8 @@ struct Phase {
     const float cos_theta = -glm::dot(wo, wi);
     const float a = eval_hg(cos_theta, phase.g);
     if (phase.weight_b == 0.0f) return a;
-    return a + phase.weight_b * (eval_hg(cos_theta, phase.g_b) - a);
+    // Not a + weight_b (b - a): in the peak of one lobe that would lose the other to rounding.
+    return (1.0f - phase.weight_b) * a + phase.weight_b * eval_hg(cos_theta, phase.g_b);
 }
 
 /// Density of sample_phase [1/sr]; the phase function itself, since sampling is exact.

@@ -29,6 +29,23 @@ std::string title_of(const VolumeDescription& volume, size_t index)
                                : fmt::format("volume \"{}\"", volume.name);
 }
 
+/// Extinctions beyond this are refused: optical depths, their sums over cells, would overflow.
+constexpr double largest_sigma_t = 1e30;
+
+void require_finite_extinction(const Volume& volume)
+{
+    if (!volume.density) return;
+    const double sigma_t =
+        static_cast<double>(volume.density_scale) * static_cast<double>(volume.density->max_value);
+    if (sigma_t <= largest_sigma_t) return;
+    throw Error(ExitCode::Input,
+                fmt::format("{}: densities of up to {:g} times density_scale = {:g} are an "
+                            "extinction over {:g} per metre; mend the densities or lower "
+                            "density_scale",
+                            printable(volume.name), volume.density->max_value, volume.density_scale,
+                            largest_sigma_t));
+}
+
 struct Preparation {
     const SceneDescription& description;
     int frame;
@@ -178,6 +195,7 @@ Volume Preparation::make_volume(const VolumeDescription& from, size_t index,
     if (from.emission.emission_scale > 0.0f && !from.file) volume.emission = volume.density;
     if (from.emission.blackbody_scale <= 0.0f) volume.temperature = nullptr;
     volume.density_scale = from.density_scale;
+    require_finite_extinction(volume);
     volume.albedo = from.albedo;
     volume.phase = from.phase;
     volume.emission_params = from.emission;

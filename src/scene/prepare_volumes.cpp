@@ -55,6 +55,10 @@ CachedGrid to_bricks(const openvdb::GridBase::Ptr& grid, GridRole role, const st
     }
     stats.non_finite_values += report.non_finite;
     stats.negative_values += report.negative;
+    if (report.non_finite + report.negative > 0) {
+        spdlog::warn("{}: {} values that are not finite and {} negative ones count as 0", place,
+                     report.non_finite, report.negative);
+    }
     ++stats.grids_built;
     return out;
 }

@@ -1,4 +1,3 @@
-#include <cmath>
 #include <cstring>
 
 #include <gtest/gtest.h>
@@ -7,122 +6,14 @@
 #include "restir/reuse_modes.h"
 #include "restir/reuse_runs.h"
 #include "restir/reuse_scenes.h"
+#include "restir/steady_runs.h"
 
 namespace mote {
 namespace {
 
-RenderDescription one_sample(const Scene& scene, const RestirParams& restir, uint32_t seed)
-{
-    RenderDescription render;
-    render.width = scene.camera.width;
-    render.height = scene.camera.height;
-    render.samples = 1;
-    render.seed = seed;
-    render.estimator = EstimatorKind::Restir;
-    render.restir = restir;
-    return render;
-}
-
-LayeredImage render_next(const Scene& scene, const RestirParams& restir, uint32_t seed,
-                         FrameHistory& history)
-{
-    FrameStats stats;
-    LayeredImage image =
-        test::direct_light_only(render_frame(scene, one_sample(scene, restir, seed),
-                                             test::direct_light_output(), history, nullptr, stats));
-    EXPECT_EQ(stats.dropped_non_finite, 0);
-    return image;
-}
-
-double mean_of(const LayeredImage& image)
-{
-    double sum = 0.0;
-    for (const Channel& channel : image.channels) {
-        for (const float v : channel.data) sum += static_cast<double>(v);
-    }
-    return sum / static_cast<double>(3 * image.channels[0].data.size());
-}
-
-/// Every reservoir that the next frame may reuse.
-void expect_sound(const FinishedPass& pass)
-{
-    int bad = 0;
-    for (const Reservoir& r : pass.reservoirs) {
-        const bool sound = std::isfinite(r.W) && r.W >= 0.0f && std::isfinite(r.p_hat) &&
-                           r.p_hat >= 0.0f && r.y.u >= 0.0f && r.y.u < 1.0f && r.M >= 1.0f &&
-                           r.M < 200.0f && r.age >= 0.0f;
-        bad += sound ? 0 : 1;
-    }
-    EXPECT_EQ(bad, 0);
-}
-
-/// Goes through `cycle` forwards and backwards, again and again, in several independent runs.
-/// Means of every hundred frames must be those of the path tracer over the same frames: Student's
-/// test over runs, since frames within a run are correlated. `alpha` is the false-alarm rate of
-/// one hundred.
-void expect_steady(std::vector<Scene> cycle, const RestirParams& restir, int frame_count)
-{
-    constexpr int runs = 8;
-    constexpr double alpha = 1e-5;
-    const test::FrameCaches caches = test::make_frame_caches(cycle);
-    const auto length = static_cast<int>(cycle.size());
-    const auto place_of = [&](int frame) {
-        if (length == 1) return size_t{0};
-        const int at = frame % (2 * length - 2);
-        return static_cast<size_t>(at < length ? at : 2 * length - 2 - at);
-    };
-    std::vector<MeanEstimate> truth;
-    for (const Scene& scene : cycle) {
-        RunningStats means;
-        const TileStats reference = test::path_traced_runs(scene, 100, {16, 1'000'000});
-        MeanEstimate mean;
-        for (const TileStats::ChannelStats& c : reference.channels) {
-            // Colours are correlated: the sum of their standard errors bounds that of the mean.
-            mean = {mean.mean + c.whole_image.mean / 3.0,
-                    std::pow(std::sqrt(mean.variance) + c.whole_image.standard_error() / 3.0, 2.0),
-                    15.0};
-        }
-        truth.push_back(mean);
-    }
-    const int hundreds = frame_count / 100;
-    std::vector<RunningStats> means(static_cast<size_t>(hundreds));
-    for (int run = 0; run < runs; ++run) {
-        FrameHistory history;
-        double sum = 0.0;
-        for (int frame = 0; frame < frame_count; ++frame) {
-            Scene& scene = cycle[place_of(frame)];
-            scene.frame = frame + 1;
-            history.impl().caches = caches[place_of(frame)];
-            const LayeredImage image =
-                render_next(scene, restir, static_cast<uint32_t>(run), history);
-            expect_sound(history.impl().before);
-            sum += mean_of(image);
-            if (frame % 100 != 99) continue;
-            means[static_cast<size_t>(frame / 100)].add(sum / 100.0);
-            sum = 0.0;
-        }
-    }
-    for (int hundred = 0; hundred < hundreds; ++hundred) {
-        MeanEstimate expected;
-        double error = 0.0;
-        for (int i = 0; i < 100; ++i) {
-            const MeanEstimate& at = truth[place_of(100 * hundred + i)];
-            expected.mean += at.mean / 100.0;
-            error += at.standard_error() / 100.0;
-        }
-        expected.variance = error * error;
-        expected.freedom = 15.0;
-        const TestResult result =
-            welch_test(estimate_mean(means[static_cast<size_t>(hundred)]), expected);
-        EXPECT_GT(result.p, alpha) << "frames " << 100 * hundred << ": "
-                                   << result.difference.mean / expected.mean << " off";
-        if (std::getenv("MOTE_REPORT")) {
-            std::printf("frames %4d: %+.2f +- %.2f %%\n", 100 * hundred,
-                        100.0 * result.difference.mean / expected.mean,
-                        100.0 * result.difference.standard_error() / expected.mean);
-        }
-    }
-}
+using test::expect_steady;
+using test::mean_of;
+using test::render_next;
 
 std::vector<Scene> one_still_frame()
 {
