@@ -10,6 +10,7 @@
 
 #include "core/error.h"
 #include "core/guarded_child.h"
+#include "core/memory_cap.h"
 #include "core/text.h"
 #include "volumes/make_bricks.h"
 
@@ -223,6 +224,13 @@ bool already_checked(const std::string& key, bool remember)
     return keys.count(key) > 0;
 }
 
+/// A leaf of one value takes about 100 bytes in the file and 2.3 kB in memory; no encoding of
+/// OpenVDB packs denser than that.
+int64_t memory_for(int64_t file_bytes)
+{
+    return std::max<int64_t>(1'000'000'000, 64 * file_bytes);
+}
+
 /// Lets a child process read the file under limits before this process does.
 void check_in_child(const std::string& path, int64_t size, const std::vector<std::string>& names,
                     const std::function<void()>& read)
@@ -233,9 +241,7 @@ void check_in_child(const std::string& path, int64_t size, const std::vector<std
     for (const std::string& name : names) key += "\n" + name;
     if (already_checked(key, false)) return;
     ChildLimits limits;
-    // A leaf of one value takes about 100 bytes in the file and 2.3 kB in memory; no encoding of
-    // OpenVDB packs denser than that.
-    limits.memory_bytes = std::max<int64_t>(1'000'000'000, 64 * size);
+    limits.memory_bytes = memory_for(size);
     // Whole files read at 50 MB/s or more; the rest of the allowance is for busy machines.
     limits.cpu_seconds = 1 + static_cast<int>(size / 5'000'000);
     limits.wall_seconds = 120 + static_cast<int>(size / 1'000'000);
@@ -261,7 +267,10 @@ std::vector<GridInfo> list_grids(const std::string& path, const GridBudget& budg
     initialize_openvdb();
     const int64_t size = checked_size(path, budget);
     check_in_child(path, size, {}, [&] { static_cast<void>(read_infos(path)); });
-    return guarded(path, [&] { return read_infos(path); });
+    return guarded(path, [&] {
+        const MemoryCap cap(memory_for(size));
+        return read_infos(path);
+    });
 }
 
 void require_grid(const std::string& path, const std::vector<GridInfo>& held,
@@ -289,7 +298,10 @@ openvdb::GridPtrVec read_grids(const std::string& path, const std::vector<std::s
     // Never destroyed: freeing a tree is a parallel loop, and the child ends right after this.
     check_in_child(path, checked_size(path, budget), names,
                    [&] { static_cast<void>(new openvdb::GridPtrVec(read_raw(path, names))); });
-    openvdb::GridPtrVec grids = guarded(path, [&] { return read_raw(path, names); });
+    openvdb::GridPtrVec grids = guarded(path, [&] {
+        const MemoryCap cap(memory_for(checked_size(path, budget)));
+        return read_raw(path, names);
+    });
     for (size_t i = 0; i < grids.size(); ++i) {
         const std::string what = describe(path, names[i]);
         guarded(what, [&] {

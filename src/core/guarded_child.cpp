@@ -17,22 +17,12 @@
 #include <fmt/core.h>
 
 #include "core/error.h"
+#include "core/memory_cap.h"
 #include "core/sanitizers.h"
 #include "core/text.h"
 
 namespace mote {
 namespace {
-
-/// Address space of this process now.
-int64_t mapped_bytes()
-{
-    std::FILE* file = std::fopen("/proc/self/statm", "r");
-    if (!file) return 0;
-    long long pages = 0;
-    const bool read = std::fscanf(file, "%lld", &pages) == 1;
-    std::fclose(file);
-    return read ? pages * sysconf(_SC_PAGESIZE) : 0;
-}
 
 void set_limit(decltype(RLIMIT_CPU) resource, int64_t soft, int64_t hard)
 {
