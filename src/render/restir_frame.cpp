@@ -131,7 +131,8 @@ bool render_independent_passes(const PassInputs& inputs, const FrameControl& con
     const Camera& camera = inputs.domain.scene->camera;
     const auto passes = static_cast<size_t>(inputs.render.samples);
     for_each_tile(camera.width, camera.height, [&](const Tile& tile) {
-        const auto pixels = static_cast<size_t>((tile.x1 - tile.x0) * (tile.y1 - tile.y0));
+        const auto pixels =
+            static_cast<size_t>(tile.x1 - tile.x0) * static_cast<size_t>(tile.y1 - tile.y0);
         TileScratch scratch;
         const std::optional<FilmSample> uniform = uniform_tile(inputs, tile);
         scratch.samples.resize(pixels, uniform.value_or(FilmSample{}));
