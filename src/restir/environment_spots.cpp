@@ -28,8 +28,8 @@ struct Division {
     [[nodiscard]] Vec3 centre(size_t pixel) const
     {
         const auto w = static_cast<size_t>(width());
-        const float theta =
-            pi * (static_cast<float>(pixel / w) + 0.5f) / static_cast<float>(height());
+        const size_t row = pixel / w;
+        const float theta = pi * (static_cast<float>(row) + 0.5f) / static_cast<float>(height());
         return environment_direction(whole, static_cast<float>(pixel % w) + 0.5f, std::cos(theta));
     }
     /// Calls f(pixel) for the pixel and its eight neighbours.
@@ -87,11 +87,13 @@ Spectrum integrate_square(const EnvironmentParts& parts, int x, int y)
     const int height = parts.whole.map->pixels.height();
     Vec3d sum(0.0);
     for (int quadrant = 0; quadrant < 4; ++quadrant) {
+        const int right = quadrant % 2;
+        const int down = quadrant / 2;
         for (int i = 0; i < 3; ++i) {
-            const double row = y + 0.5 * (quadrant / 2) + 0.25 * (1.0 + nodes[i]);
+            const double row = y + 0.5 * down + 0.25 * (1.0 + nodes[i]);
             const double theta = std::numbers::pi * row / height;
             for (int j = 0; j < 3; ++j) {
-                const double column = x + 0.5 * (quadrant % 2) + 0.25 * (1.0 + nodes[j]);
+                const double column = x + 0.5 * right + 0.25 * (1.0 + nodes[j]);
                 const Vec3 wi = environment_direction(parts.whole, static_cast<float>(column),
                                                       static_cast<float>(std::cos(theta)));
                 const Spectrum above =

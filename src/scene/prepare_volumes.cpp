@@ -67,6 +67,7 @@ void build(const FilePlan& file, const GridPlan& plan, const std::vector<Planned
            const PlanContext&, SceneCache::Impl& cache, PrepareStats& stats)
 {
     std::vector<std::string> names;
+    names.reserve(missing.size());
     for (const PlannedGrid& grid : missing) names.push_back(grid.name);
     openvdb::GridPtrVec grids;
     {

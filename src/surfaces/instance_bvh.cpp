@@ -46,7 +46,8 @@ InstanceFrame embree_frame(RTCScene scene, size_t instance, float time)
     rtcGetGeometryTransform(geometry, time, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
     InstanceFrame frame;
     for (int c = 0; c < 4; ++c) {
-        const Vec3d column(columns[3 * c], columns[3 * c + 1], columns[3 * c + 2]);
+        const float* first = columns + static_cast<ptrdiff_t>(3) * c;
+        const Vec3d column(first[0], first[1], first[2]);
         (c < 3 ? frame.linear[c] : frame.offset) = column;
     }
     frame.inverse = glm::inverse(frame.linear);
