@@ -222,4 +222,27 @@ inline std::vector<Scene> flickering_flame_frames(int count)
     return frames;
 }
 
+/// A one-sided lamp in the smoke: most candidates bring nothing.
+inline std::vector<Scene> dark_side_frames(int count)
+{
+    std::vector<Scene> frames = still_frames(count);
+    for (Scene& scene : frames) {
+        scene.lights = {QuadLight{
+            {-0.3f, -0.3f, 0.1f}, {0.0f, 0.6f, 0.0f}, {0.6f, 0.0f, 0.0f}, Spectrum(3.0f), false}};
+    }
+    return frames;
+}
+
+/// Far more parallax than between frames of a film.
+inline std::vector<Scene> flight_around_frames(int count)
+{
+    using namespace scene_text;
+    return frames_of(
+        image() +
+            "[camera]\nfov = 24\nkeys = [ { frame = 1, position = [-1.6, 0, 2.4], look_at = [0, 0, "
+            "0] }, { frame = 5, position = [1.6, 0, 2.4], look_at = [0, 0, 0] } ]\n" +
+            puff() + two_lamps,
+        count);
+}
+
 }  // namespace mote::test

@@ -63,6 +63,8 @@ TEST(EmissionAlongStat, IsTheIntegralForOneAndSeveralMedia)
                 2000, 31, [&](Rng& rng) { return luminance(emission_along(frame, domain, rng)); });
             EXPECT_LT(std::abs(stats.mean - exact), 5.0 * stats.standard_error() + 3e-3 * exact)
                 << dx << ": " << stats.mean << ", exact " << exact;
+            // An estimate that is wrong by 2 % would be noticed.
+            EXPECT_LE(5.0 * stats.standard_error() + 3e-3 * exact, 0.02 * exact);
             // One sample is good to a tenth.
             EXPECT_LT(stats.standard_error() * std::sqrt(2000.0), 0.1 * exact + 1e-6);
             seen += exact;

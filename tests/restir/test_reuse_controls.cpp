@@ -70,29 +70,6 @@ void PrintTo(const Control& control, std::ostream* out)
     *out << control.name;
 }
 
-/// A one-sided lamp in the smoke: most candidates bring nothing.
-std::vector<Scene> dark_side_frames(int count)
-{
-    std::vector<Scene> frames = test::still_frames(count);
-    for (Scene& scene : frames) {
-        scene.lights = {QuadLight{
-            {-0.3f, -0.3f, 0.1f}, {0.0f, 0.6f, 0.0f}, {0.6f, 0.0f, 0.0f}, Spectrum(3.0f), false}};
-    }
-    return frames;
-}
-
-/// Far more parallax than between frames of a film.
-std::vector<Scene> flight_around_frames(int count)
-{
-    using namespace test::scene_text;
-    return test::frames_of(
-        image() +
-            "[camera]\nfov = 24\nkeys = [ { frame = 1, position = [-1.6, 0, 2.4], look_at = [0, 0, "
-            "0] }, { frame = 5, position = [1.6, 0, 2.4], look_at = [0, 0, 0] } ]\n" +
-            puff() + two_lamps,
-        count);
-}
-
 SmallReuse in_time(ShiftKind shift, Fault fault, MisForm mis = MisForm::Pairwise)
 {
     SmallReuse how;
@@ -164,14 +141,14 @@ const Control controls[] = {
      in_time(numbers, Fault::DonorVisibility)},
     {"normalisation of the donor", test::still_frames, 1,
      in_space(numbers, Fault::DonorNormalisation)},
-    {"empty is no input", dark_side_frames, 1,
+    {"empty is no input", test::dark_side_frames, 1,
      with_one_candidate(in_space(numbers, Fault::EmptyIsNoInput))},
     {"one-sided rejection, numbers", test::flying_smoke_frames, 4,
      with_one_candidate(in_time(numbers, Fault::OneSidedRejection)), 1000},
     {"one-sided rejection, world", test::evolving_smoke_frames, 4,
      in_time(world, Fault::OneSidedRejection), 200},
-    {"motion of the own sample", flight_around_frames, 4, in_time(world, Fault::OwnSampleMotion),
-     200},
+    {"motion of the own sample", test::flight_around_frames, 4,
+     in_time(world, Fault::OwnSampleMotion), 200},
     {"W one per cent too large", test::still_frames, 4, in_time(numbers, Fault::ScaledW), 400},
     {"sum kept, M stops at 20", test::still_frames, 30,
      with_cap(in_time(numbers, Fault::SumKept), 20.0f), 30},

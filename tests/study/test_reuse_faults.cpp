@@ -94,28 +94,6 @@ SmallReuse in_space(ShiftKind shift, Fault fault)
     return how;
 }
 
-/// A one-sided lamp in the smoke: most candidates bring nothing.
-std::vector<Scene> dark_side(int count)
-{
-    std::vector<Scene> frames = test::still_frames(count);
-    for (Scene& scene : frames) {
-        scene.lights = {QuadLight{
-            {-0.3f, -0.3f, 0.1f}, {0.0f, 0.6f, 0.0f}, {0.6f, 0.0f, 0.0f}, Spectrum(3.0f), false}};
-    }
-    return frames;
-}
-
-std::vector<Scene> flight_around(int count)
-{
-    using namespace test::scene_text;
-    return test::frames_of(
-        image() +
-            "[camera]\nfov = 24\nkeys = [ { frame = 1, position = [-1.6, 0, 2.4], look_at = [0, 0, "
-            "0] }, { frame = 5, position = [1.6, 0, 2.4], look_at = [0, 0, 0] } ]\n" +
-            puff() + two_lamps,
-        count);
-}
-
 SmallReuse with_one_candidate(SmallReuse how)
 {
     how.candidates = 1;
@@ -141,14 +119,14 @@ const Control controls[] = {
      in_time(ShiftKind::RandomNumbers, Fault::ScaledW), 400},
     {"no_Jacobian", test::everything_moves_frames, 4, in_time(ShiftKind::World, Fault::NoJacobian),
      400},
-    {"M_of_a_zero_target", dark_side, 1,
+    {"M_of_a_zero_target", test::dark_side_frames, 1,
      with_one_candidate(in_space(ShiftKind::RandomNumbers, Fault::EmptyIsNoInput))},
     {"stale_target", test::still_frames, 1, in_space(ShiftKind::RandomNumbers, Fault::DonorTarget)},
     {"density_of_now_for_then", test::everything_moves_frames, 4,
      in_time(ShiftKind::World, Fault::CurrentAsPrevious)},
     {"one_sided_rejection", test::evolving_smoke_frames, 4,
      in_time(ShiftKind::World, Fault::OneSidedRejection), 200},
-    {"motion_of_the_own_sample", flight_around, 4,
+    {"motion_of_the_own_sample", test::flight_around_frames, 4,
      in_time(ShiftKind::World, Fault::OwnSampleMotion), 200},
 };
 
