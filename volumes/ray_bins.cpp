@@ -47,11 +47,12 @@ struct BinWriter {
 };
 
 /// Bins of one medium. Returns the ray in its grid, for later lookups.
-void bin_one(const Volume& volume, const Ray& ray, float cut, RayBins& bins, BinCounts& counts)
+void bin_one(const Volume& volume, const Ray& ray, float t_end, float cut, RayBins& bins,
+             BinCounts& counts)
 {
     bins.count = 0;
     const BrickGrid& grid = *volume.density;
-    const LocalRay local = density_ray(volume, ray, {0.0f, infinity});
+    const LocalRay local = density_ray(volume, ray, {0.0f, t_end});
     if (local.misses()) return;
     bins.t0 = local.t0;
     const float scale = volume.density_scale;
@@ -222,13 +223,14 @@ float invert_single(const Volume& volume, const LocalRay& part, float tau)
 
 /// Merges the bins of several media: the union of their edges, thinned to what fits, and the depth
 /// of all media at each.
-void bin_all(const Media& media, const Ray& ray, float cut, RayBins& bins, BinCounts& counts)
+void bin_all(const Media& media, const Ray& ray, float t_end, float cut, RayBins& bins,
+             BinCounts& counts)
 {
     std::vector<double> edges;  // world distances
     for (const Volume& volume : media.volumes) {
         if (is_void(volume)) continue;
         RayBins own;
-        bin_one(volume, ray, cut, own, counts);
+        bin_one(volume, ray, t_end, cut, own, counts);
         for (int k = 0; k <= own.count && own.count > 0; ++k) {
             edges.push_back(own.t0 + static_cast<double>(own.s[k]));
         }
@@ -276,14 +278,15 @@ float invert_all(const MediaStretch& stretch, float s0, float s1, float whole, f
 
 }  // namespace
 
-void make_ray_bins(const Media& media, const Ray& ray, float cut, RayBins& bins, BinCounts& counts)
+void make_ray_bins(const Media& media, const Ray& ray, float cut, RayBins& bins, BinCounts& counts,
+                   float t_end)
 {
     bins.count = 0;
     const int64_t met = counts.rays;
     if (const Volume* volume = single_volume(media)) {
-        if (!is_void(*volume)) bin_one(*volume, ray, cut, bins, counts);
+        if (!is_void(*volume)) bin_one(*volume, ray, t_end, cut, bins, counts);
     } else {
-        bin_all(media, ray, cut, bins, counts);
+        bin_all(media, ray, t_end, cut, bins, counts);
     }
     counts.misses += counts.rays == met ? 1 : 0;
 }

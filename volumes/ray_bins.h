@@ -41,9 +41,10 @@ struct BinCounts {
 /// Fills `bins` for a camera ray. A bin holds up to 4 cells (more on long rays) and is closed
 /// earlier where transmittance has dropped by 4 %, or at a gap. The walk ends where transmittance
 /// is below `cut` (0: nowhere): what lies behind counts as not there, so choose it by what a light
-/// there could still contribute. Several media: edges from all of them. Cost: every cell on the
-/// ray; about twice that if media overlap.
-void make_ray_bins(const Media& media, const Ray& ray, float cut, RayBins& bins, BinCounts& counts);
+/// there could still contribute; and at t_end [m], where something ends the ray. Several media:
+/// edges from all of them. Cost: every cell on the ray; about twice that if media overlap.
+void make_ray_bins(const Media& media, const Ray& ray, float cut, RayBins& bins, BinCounts& counts,
+                   float t_end = infinity);
 
 /// Where in bin k the optical depth counted from its near edge reaches `tau`, by closed-form
 /// integrals: distance s. Clamped to the bin. Exact up to float rounding.

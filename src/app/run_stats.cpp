@@ -36,6 +36,7 @@ Json restir_json(const FrameStats& stats)
             {"cells", stats.cells},
             {"uniform_bricks", stats.uniform_bricks},
             {"candidates", stats.candidates},
+            {"surfaces", stats.surfaces},
             {"emission_integrals", stats.emission_integrals},
             {"histories_used", stats.histories_used},
             {"neighbours_used", stats.neighbours_used}};

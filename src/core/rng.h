@@ -26,7 +26,19 @@ namespace mote {
 }
 
 /// What a stream of random numbers is for. Two purposes never share numbers.
-enum class Stream : uint32_t { Camera, Path, Emitter, Test, Initial, Temporal, Spatial, Shade };
+enum class Stream : uint32_t {
+    Camera,
+    Path,
+    Emitter,
+    Test,
+    Initial,
+    Temporal,
+    Spatial,
+    Shade,
+    Surface,
+    SurfaceTemporal,
+    SurfaceSpatial,
+};
 
 /// Counter-based generator: the n-th number of a stream is a pure function of its key and n, so
 /// images do not depend on thread count or order. Only 32-bit operations (shader-portable).

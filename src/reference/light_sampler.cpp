@@ -7,8 +7,6 @@ namespace {
 
 /// Up to this many lights, Auto weighs each of them at each point.
 constexpr size_t few_lights = 8;
-/// Up to this many lamps are tried one by one for rays that meet them.
-constexpr size_t few_surfaces = 4;
 
 float scene_radius(const Scene& scene)
 {
@@ -19,15 +17,10 @@ float scene_radius(const Scene& scene)
     return radius > 0.0f && std::isfinite(radius) ? radius : 1.0f;
 }
 
-/// Lamps that rays meet and pass.
-bool has_surface(const Light& light)
-{
-    return std::holds_alternative<SphereLight>(light) || std::holds_alternative<QuadLight>(light);
-}
-
 bool can_be_met(const Light& light)
 {
-    return has_surface(light) || std::holds_alternative<TriangleLight>(light);
+    return std::holds_alternative<SphereLight>(light) || std::holds_alternative<QuadLight>(light) ||
+           std::holds_alternative<TriangleLight>(light);
 }
 
 bool is_in_tree(LightSource source, float fluence)
@@ -38,8 +31,8 @@ bool is_in_tree(LightSource source, float fluence)
 }  // namespace
 
 LightSampler::LightSampler(const Scene& scene, const PathTracerParams& params)
+    : surfaces_(scene.lights)
 {
-    index_surfaces(scene.lights);
     for (size_t i = 0; i < scene.media.volumes.size(); ++i) {
         const Volume& volume = scene.media.volumes[i];
         if (!volume.emission_params.is_on()) continue;
@@ -76,21 +69,6 @@ LightSampler::LightSampler(const Scene& scene, const PathTracerParams& params)
     for (size_t i = 0; i < emitters_.size(); ++i) {
         if (emitters_[i].source != LightSource::Lamp) continue;
         emitter_of_lamp_[static_cast<size_t>(emitters_[i].index)] = static_cast<int>(i);
-    }
-}
-
-void LightSampler::index_surfaces(const std::vector<Light>& lights)
-{
-    std::vector<LightTree::Item> items;
-    for (size_t i = 0; i < lights.size(); ++i) {
-        const float power = light_power(lights[i], 1.0f);
-        if (!has_surface(lights[i]) || !(power > 0.0f)) continue;
-        items.push_back({static_cast<int>(i), light_bounds(lights[i]), power});
-    }
-    if (items.size() > few_surfaces) {
-        surface_tree_ = LightTree(std::move(items));
-    } else {
-        for (const LightTree::Item& item : items) surfaces_.push_back(item.id);
     }
 }
 

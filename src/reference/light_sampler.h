@@ -5,7 +5,7 @@
 
 #include "core/distribution.h"
 #include "core/rng.h"
-#include "reference/light_tree.h"
+#include "scene/lamp_surfaces.h"
 #include "scene/path_tracer_params.h"
 #include "scene/scene.h"
 #include "volumes/emission.h"
@@ -46,15 +46,11 @@ class LightSampler {
     template <class F>
     void for_each_lamp_on_ray(const Ray& ray, F&& f) const
     {
-        for (const int index : surfaces_) f(index);
-        surface_tree_.for_each_on_ray(ray, f);
+        surfaces_.for_each_on_ray(ray, f);
     }
 
     /// Whether any lamp has a surface that rays can meet.
-    [[nodiscard]] bool has_surfaces() const
-    {
-        return !surfaces_.empty() || !surface_tree_.is_empty();
-    }
+    [[nodiscard]] bool has_surfaces() const { return !surfaces_.is_empty(); }
     [[nodiscard]] const std::vector<EmissiveVolume>& emissive_volumes() const
     {
         return emissive_volumes_;
@@ -72,7 +68,6 @@ class LightSampler {
         Bounds3 bounds;        ///< of lights that are not at infinity
     };
     void add_emitters(const Scene& scene, const PathTracerParams& params);
-    void index_surfaces(const std::vector<Light>& lights);
     [[nodiscard]] int find(LightSource source, int index) const;
     /// What a light is expected to bring at x [W/m^2], shadows apart.
     [[nodiscard]] static double importance(const Emitter& emitter, Vec3 x);
@@ -84,9 +79,8 @@ class LightSampler {
     size_t listed_ = 0;  ///< the first emitters_ are weighed one by one, the rest by the tree
     LightSamplerKind kind_ = LightSamplerKind::PowerDistance;
     AliasTable table_;
-    LightTree tree_;             ///< its ids are positions in emitters_
-    std::vector<int> surfaces_;  ///< lamps with a surface if few, else they are in the tree
-    LightTree surface_tree_;
+    LightTree tree_;  ///< its ids are positions in emitters_
+    LampSurfaces surfaces_;
     std::vector<EmissiveVolume> emissive_volumes_;
 };
 

@@ -21,15 +21,38 @@ std::optional<SurfaceHit> find_surface(const Scene& scene, const Ray& ray)
     return intersect(*scene.surfaces, ray, {0.0f, infinity});
 }
 
-/// Follows a path from a ray on, `event_count` events after the camera, and adds what it brings.
-/// `segment`: the camera ray, if equiangular sampling takes part.
-void follow(const TraceContext& context, LightRay light_ray, Spectrum beta, int event_count,
+/// A path under way: the ray it goes on along, what it carries, and the events behind it.
+struct PathState {
+    LightRay light_ray;
+    Spectrum beta{1.0f};
+    int event_count = 0;
+    bool first_is_surface = false;
+};
+
+/// The ray on which light scattered at the event arrives; empty if nothing is scattered. A
+/// surface's BSDF goes into beta.
+std::optional<LightRay> scattered_ray(const ScatterEvent& event, Rng& rng, Spectrum& beta)
+{
+    if (event.surface) {
+        const std::optional<BsdfSample> s = sample_bsdf(*event.surface, event.wo, rng.uniform3());
+        if (!s) return std::nullopt;
+        beta *= s->value.f * (s->value.cosine / s->value.pdf_dir);
+        return LightRay{Ray{ray_origin(event, s->wi), s->wi, event.time}, s->value.pdf_dir, false};
+    }
+    const Vec3 wi = sample_phase(*event.phase, event.wo, rng.uniform2());
+    return LightRay{Ray{event.x, wi, event.time}, phase_pdf(*event.phase, event.wo, wi), false,
+                    event.first};
+}
+
+/// Follows a path and adds what it brings. `segment`: the camera ray, if equiangular sampling takes
+/// part.
+void follow(const TraceContext& context, PathState path,
             const std::optional<CameraSegment>& segment, Rng& rng, PathResult& result)
 {
+    auto& [light_ray, beta, event_count, first_is_surface] = path;
     const Scene& scene = context.scene;
     const PathTracerParams& params = context.params;
     const bool has_emission = !context.lights.emissive_volumes().empty();
-    bool first_is_surface = false;
     FirstEvent first;
     for (;; ++event_count) {
         const Ray& ray = light_ray.ray;
@@ -94,26 +117,14 @@ void follow(const TraceContext& context, LightRay light_ray, Spectrum beta, int 
         part_of(result, event_count + 1, first_is_surface) +=
             beta * estimate_direct_light(context, event, rng);
 
-        std::optional<BsdfSample> scattered;
-        if (vertex && !collision) {
-            scattered = sample_bsdf(*vertex, event.wo, rng.uniform3());
-            if (!scattered) return;
-            beta *= scattered->value.f * (scattered->value.cosine / scattered->value.pdf_dir);
-        }
+        const std::optional<LightRay> scattered = scattered_ray(event, rng, beta);
+        if (!scattered) return;
         if (event_count + 1 > params.roulette_start) {
             const float survival = std::min(1.0f, max_component(beta));
             if (rng.uniform() >= survival) return;
             beta /= survival;
         }
-        if (scattered) {
-            const Vec3 wi = scattered->wi;
-            light_ray = {Ray{ray_origin(event, wi), wi, event.time}, scattered->value.pdf_dir,
-                         false, nullptr};
-        } else {
-            const Vec3 wi = sample_phase(*event.phase, event.wo, rng.uniform2());
-            light_ray = {Ray{event.x, wi, event.time}, phase_pdf(*event.phase, event.wo, wi), false,
-                         event.first};
-        }
+        light_ray = *scattered;
     }
 }
 
@@ -130,20 +141,21 @@ PathResult trace_path(const Scene& scene, const LightSampler& lights,
         segment = make_camera_segment(scene.media, camera_ray, hit ? hit->t : infinity);
     }
     if (segment) result.direct += estimate_equiangular(context, *segment, rng);
-    follow(context, {camera_ray, 0.0f, true, nullptr}, Spectrum(1.0f), 0, segment, rng, result);
+    follow(context, {{camera_ray}}, segment, rng, result);
     return result;
 }
 
 PathResult trace_after_event(const Scene& scene, const LightSampler& lights,
-                             const PathTracerParams& params, const FirstScatter& first, Rng& rng)
+                             const PathTracerParams& params, const ScatterEvent& first, Rng& rng)
 {
     const TraceContext context{scene, lights, params};
     PathResult result;
-    const Vec3 wi = sample_phase(*first.phase, first.wo, rng.uniform2());
-    const float pdf_dir = phase_pdf(*first.phase, first.wo, wi);
-    follow(context, {Ray{first.x, wi, first.time}, pdf_dir, false, nullptr}, Spectrum(1.0f), 1,
-           std::nullopt, rng, result);
+    Spectrum beta(1.0f);
+    const std::optional<LightRay> scattered = scattered_ray(first, rng, beta);
+    if (!scattered) return result;
+    follow(context, {*scattered, beta, 1, first.surface != nullptr}, std::nullopt, rng, result);
     result.direct = Spectrum(0.0f);  // the scattered ray's half of it alone
+    result.surface_direct = Spectrum(0.0f);
     return result;
 }
 

@@ -2,6 +2,7 @@
 
 #include "core/rng.h"
 #include "reference/light_sampler.h"
+#include "reference/scatter_event.h"
 #include "scene/path_tracer_params.h"
 #include "scene/scene.h"
 
@@ -38,20 +39,12 @@ struct PathResult {
 [[nodiscard]] PathResult trace_path(const Scene& scene, const LightSampler& lights,
                                     const PathTracerParams& params, const Ray& ray, Rng& rng);
 
-/// A camera path's first scattering event.
-struct FirstScatter {
-    Vec3 x{0.0f};   ///< [m]
-    Vec3 wo{0.0f};  ///< towards the camera [unit]
-    float time = 0.0f;
-    const Phase* phase = nullptr;
-};
-
-/// What a path brings that has just scattered for the first time, the event's albedo apart:
-/// indirect is the radiance scattered at least once more before, seen at the event. direct is not
-/// estimated (0). Precondition: params.max_bounces > 1. For estimators that place the first event
-/// themselves.
+/// What a path brings that is about to scatter for the first time at `first`: radiance scattered
+/// twice and more, seen at the event, in indirect or surface_indirect. A medium's albedo is left
+/// out. Light scattered once is not estimated (0). Precondition: params.max_bounces > 1. For
+/// estimators that place the first event themselves.
 [[nodiscard]] PathResult trace_after_event(const Scene& scene, const LightSampler& lights,
                                            const PathTracerParams& params,
-                                           const FirstScatter& first, Rng& rng);
+                                           const ScatterEvent& first, Rng& rng);
 
 }  // namespace mote

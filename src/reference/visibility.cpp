@@ -12,9 +12,9 @@ bool is_blocked(const Surfaces& surfaces, const ScatterEvent& event, Vec3 wi, fl
         const float length = glm::length(to_end);
         if (!(length > 0.0f)) return false;
         ray.d = to_end / length;
-        distance = length * (1.0f - 0x1p-21f);
+        distance = length;
     }
-    return is_occluded(surfaces, ray, {0.0f, distance});
+    return is_shadowed(surfaces, ray, distance);
 }
 
 }  // namespace

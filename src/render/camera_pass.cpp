@@ -5,6 +5,7 @@
 #include "render/view_depth.h"
 #include "restir/emission_along.h"
 #include "scene/environment.h"
+#include "surfaces/bsdf.h"
 #include "volumes/media_at.h"
 
 namespace mote {
@@ -40,29 +41,37 @@ Spectrum seen_background(const PassInputs& inputs, const PixelDomain& domain, fl
 {
     const Scene& scene = *inputs.domain.scene;
     Spectrum sum(0.0f);
-    if (scene.environment) {
+    if (scene.environment && !domain.surface) {
         sum += transmittance * environment_radiance(*scene.environment, domain.ray.d);
     }
     if (!inputs.lights.has_surfaces()) return sum;
     inputs.lights.for_each_lamp_on_ray(domain.ray, [&](int index) {
         const Light& light = scene.lights[static_cast<size_t>(index)];
         const std::optional<LightHit> hit = hit_light(light, domain.ray.o, domain.ray.d);
-        if (hit) sum += transmittance_to(inputs.domain, domain, hit->distance) * hit->Le;
+        if (hit && hit->distance <= domain.t_end()) {
+            sum += transmittance_to(inputs.domain, domain, hit->distance) * hit->Le;
+        }
     });
     return sum;
 }
 
-/// The layers that belong to a first collision: one exact free flight stands for them.
-void add_first_collision(const PassInputs& inputs, const PixelDomain& domain, float u,
-                         FilmSample& sample)
+/// The layers that belong to a first collision, in a medium or with the surface behind it: one
+/// exact free flight stands for them.
+void add_first_collision(const PassInputs& inputs, const PixelDomain& domain,
+                         const SurfaceVertex* surface, float u, FilmSample& sample)
 {
     const Scene& scene = *inputs.domain.scene;
     const AovSet& aovs = inputs.aovs;
     const float depth = domain.bins.depth();
     const float tau = -std::log1p(-u);
-    sample.collided = tau < depth;
-    float t = infinity;
-    if (sample.collided) {
+    const bool in_medium = tau < depth;
+    sample.collided = in_medium || surface;
+    sample.on_surface = !in_medium && surface;
+    float t = domain.t_end();
+    if (sample.on_surface) {
+        sample.depth = view_depth(scene.camera, domain.ray, t);
+        sample.albedo = surface_albedo(*surface);
+    } else if (in_medium) {
         t = domain.bins.world_t(distance_at(scene.media, domain.ray, domain.bins, tau));
         sample.depth = view_depth(scene.camera, domain.ray, t);
         for_each_scatterer(scene.media, domain.ray.at(t), domain.ray.time,
@@ -70,42 +79,75 @@ void add_first_collision(const PassInputs& inputs, const PixelDomain& domain, fl
                                sample.albedo += share * albedo;
                            });
     }
-    if (aovs.needs_motion()) sample.motion = film_motion(scene, domain.ray, t);
+    const int object = sample.on_surface ? surface->object : -1;
+    if (aovs.needs_motion()) sample.motion = film_motion(scene, domain.ray, t, object);
+}
+
+/// The scattering event in a medium at optical depth tau; its albedo, black if there is none.
+Spectrum medium_event(const Scene& scene, const PixelDomain& domain, float tau, float choice,
+                      ScatterEvent& event)
+{
+    event.x =
+        domain.ray.at(domain.bins.world_t(distance_at(scene.media, domain.ray, domain.bins, tau)));
+    Spectrum albedo(0.0f);
+    float before = 0.0f;
+    for_each_scatterer(scene.media, event.x, event.time,
+                       [&](const Volume& volume, float share, Spectrum own) {
+                           if (!event.phase || choice >= before) {
+                               event.phase = &volume.phase;
+                               albedo = own;
+                           }
+                           before += share;
+                       });
+    return albedo;
 }
 
 /// Light scattered twice and more, by the path tracer from exact first events on: stratified free
-/// flights, each worth the share of light that collides.
-Spectrum trace_indirect(const PassInputs& inputs, const PixelDomain& domain, Rng& rng,
-                        bool& truncated)
+/// flights, each worth the share of light that collides; where a surface ends the ray, that is all.
+void add_indirect(const PassInputs& inputs, const PixelDomain& domain, const SurfaceVertex* surface,
+                  Rng& rng, FilmSample& sample, bool& truncated)
 {
     const Scene& scene = *inputs.domain.scene;
-    const RayBins& bins = domain.bins;
+    const float depth = domain.bins.depth();
     const int paths = inputs.domain.params.indirect_paths;
-    const float lost = -std::expm1(-bins.depth());
-    Spectrum sum(0.0f);
+    const float lost = surface ? 1.0f : -std::expm1(-depth);
+    const float weight = lost / static_cast<float>(paths);
     for (int i = 0; i < paths; ++i) {
         const float u = (static_cast<float>(i) + rng.uniform()) / static_cast<float>(paths);
         const float tau = -std::log1p(-std::min(u, one_minus_epsilon) * lost);
         const float choice = rng.uniform();
-        const Vec3 x = domain.ray.at(bins.world_t(distance_at(scene.media, domain.ray, bins, tau)));
-        FirstScatter first{x, domain.wo(), domain.ray.time, nullptr};
-        Spectrum albedo(0.0f);
-        float before = 0.0f;
-        for_each_scatterer(scene.media, x, first.time,
-                           [&](const Volume& volume, float share, Spectrum own) {
-                               if (!first.phase || choice >= before) {
-                                   first.phase = &volume.phase;
-                                   albedo = own;
-                               }
-                               before += share;
-                           });
-        if (!first.phase) continue;
+        ScatterEvent first{Vec3(0.0f), domain.wo(), domain.ray.time, nullptr, nullptr, nullptr};
+        Spectrum albedo(1.0f);
+        if (surface && !(tau < depth)) {
+            first.x = surface->p;
+            first.surface = surface;
+        } else {
+            albedo = medium_event(scene, domain, tau, choice, first);
+            if (!first.phase) continue;
+        }
         const PathResult path =
             trace_after_event(scene, inputs.lights, inputs.render.path, first, rng);
-        sum += albedo * path.indirect;
+        sample.indirect += weight * albedo * path.indirect;
+        sample.surface_indirect += weight * path.surface_indirect;
         truncated |= path.truncated;
     }
-    return lost / static_cast<float>(paths) * sum;
+}
+
+/// Of what ends the ray: its emission, normal and place, and the domain of its samples.
+void begin_surface(const PassInputs& inputs, const PassKey& key, PassDomain& domain,
+                   FilmSample& sample)
+{
+    domain.surface = {};
+    if (!domain.media.surface) return;
+    Rng rng = pass_rng(inputs, key, Stream::Surface);
+    domain.surface = make_surface_domain(inputs.domain, domain.media, rng.uniform());
+    const SurfaceVertex& v = domain.surface.v;
+    const Vec3 wo = domain.surface.wo;
+    sample.surface_emission = sample.transmittance * surface_emission(v, wo);
+    sample.transmittance = 0.0f;
+    sample.has_surface = true;
+    sample.normal = glm::dot(v.ng, wo) > 0.0f ? v.ns : -v.ns;
+    sample.position = v.p;
 }
 
 }  // namespace
@@ -124,6 +166,7 @@ void PassCounts::add(const PassCounts& other)
     reuse.histories += other.reuse.histories;
     reuse.neighbours += other.reuse.neighbours;
     candidates += other.candidates;
+    surfaces += other.surfaces;
     emission_integrals += other.emission_integrals;
     truncated += other.truncated;
 }
@@ -149,7 +192,8 @@ std::optional<FilmSample> uniform_tile(const PassInputs& inputs, const Tile& til
 {
     const Scene& scene = *inputs.domain.scene;
     const bool varies = (scene.environment && scene.environment->map) ||
-                        inputs.lights.has_surfaces() || inputs.aovs.needs_motion();
+                        inputs.lights.has_surfaces() || scene.surfaces ||
+                        inputs.aovs.needs_motion();
     if (varies || media_in_view(scene, tile)) return std::nullopt;
     FilmSample sample;
     if (scene.environment) sample.background = scene.environment->radiance;
@@ -157,47 +201,50 @@ std::optional<FilmSample> uniform_tile(const PassInputs& inputs, const Tile& til
 }
 
 void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray, int owner,
-                PixelDomain& domain, LightRays& rays, FilmSample& sample, PassCounts& counts)
+                PassDomain& domain, LightRays& rays, FilmSample& sample, PassCounts& counts)
 {
     const FrameDomain& frame = inputs.domain;
     const Scene& scene = *frame.scene;
     const PassSequence numbers = pass_numbers(inputs, key);
     const int64_t cells_before = counts.bins.cells;
-    make_pixel_domain(frame, ray, domain, counts.bins);
+    PixelDomain& media = domain.media;
+    make_pixel_domain(frame, ray, media, counts.bins);
 
-    const float depth = domain.bins.depth();
-    sample.transmittance = std::exp(-depth);
-    sample.optical_depth = depth;
-    sample.exact_rays = domain.bins.empty() ? 0.0f : 1.0f;
+    sample.optical_depth = media.bins.depth();
+    sample.transmittance = std::exp(-sample.optical_depth);
+    sample.exact_rays = media.bins.empty() ? 0.0f : 1.0f;
     sample.work.y = static_cast<float>(counts.bins.cells - cells_before);
     if (inputs.aovs.has(Aov::OpticalDepth) && sample.transmittance <= frame.transmittance_cut) {
         // The bins may end before the media do.
-        sample.optical_depth = optical_depth(scene.media, ray, {0.0f, infinity});
+        sample.optical_depth = optical_depth(scene.media, ray, {0.0f, media.t_end()});
     }
-    sample.background = seen_background(inputs, domain, sample.transmittance);
+    sample.background = seen_background(inputs, media, sample.transmittance);
     if (frame.has_emission) {
         Rng rng = pass_rng(inputs, key, Stream::Shade);
-        sample.emission = emission_along(frame, domain, rng);
+        sample.emission = emission_along(frame, media, rng);
         ++counts.emission_integrals;
     }
-    if (domain.bins.empty() && !inputs.aovs.needs_motion()) return;
+    begin_surface(inputs, key, domain, sample);
+    const SurfaceVertex* surface = media.surface ? &domain.surface.v : nullptr;
+    const bool is_empty = media.bins.empty() && !surface;
+    if (is_empty && !inputs.aovs.needs_motion()) return;
     if (inputs.aovs.needs_first_collision()) {
-        add_first_collision(inputs, domain, pair(numbers, NumberPair::Flight).x, sample);
+        add_first_collision(inputs, media, surface, pair(numbers, NumberPair::Flight).x, sample);
     }
     const int max_bounces = inputs.render.path.max_bounces;
-    if (domain.bins.empty() || max_bounces == 0) return;
+    if (is_empty || max_bounces == 0) return;
     Rng rng = pass_rng(inputs, key, Stream::Path);
     const CorrectionPairs pairs{static_cast<uint32_t>(NumberPair::Distances),
                                 static_cast<uint32_t>(NumberPair::Directions),
                                 static_cast<uint32_t>(NumberPair::Choices)};
     if (frame.params.control_variate) {
         sample.direct =
-            scatter_infinite_lights(frame, ray, domain.bins, numbers, pairs, rng, owner, rays);
+            scatter_infinite_lights(frame, ray, media.bins, numbers, pairs, rng, owner, rays);
     }
     ++counts.truncated;
     if (max_bounces > 1) {
         bool truncated = false;
-        sample.indirect = trace_indirect(inputs, domain, rng, truncated);
+        add_indirect(inputs, media, surface, rng, sample, truncated);
         counts.truncated += truncated ? 0 : -1;
     }
 }

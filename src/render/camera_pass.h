@@ -8,6 +8,7 @@
 #include "restir/media_in_view.h"
 #include "restir/pixel_domain.h"
 #include "restir/reuse_passes.h"
+#include "restir/surface_domain.h"
 #include "scene/description.h"
 
 namespace mote {
@@ -35,7 +36,8 @@ struct PassCounts {
     BinCounts bins;
     WalkCounts light_rays;
     ReuseCounts reuse;
-    int64_t candidates = 0;
+    int64_t candidates = 0;          ///< in media and on surfaces
+    int64_t surfaces = 0;            ///< passes that sampled a surface's light
     int64_t emission_integrals = 0;  ///< along camera rays, over all media that glow
     int64_t truncated = 0;           ///< passes whose light could have scattered on
 
@@ -45,12 +47,19 @@ struct PassCounts {
 /// The pixel's camera ray in a pass: place on the film, on the lens and in time.
 [[nodiscard]] Ray camera_ray(const PassInputs& inputs, const PassKey& key);
 
-/// Tabulates the media along the pixel's camera ray and fills all parts of the sample that need no
-/// reservoir: background and alpha in closed form, emission by one point per brick
-/// with exact transmittance, lights at infinity by control variate (corrections go to `rays` under
-/// `owner`), two and more events by the path tracer. Pixels without smoke cost a bounds test.
+/// Where a pixel's samples live in a pass: in the media along its ray, and on the surface at its
+/// end.
+struct PassDomain {
+    PixelDomain media;
+    SurfaceDomain surface;
+};
+
+/// Tabulates the media along the pixel's camera ray, up to a surface, and fills all parts of the
+/// sample that need no reservoir: background and alpha in closed form, emission by one point per
+/// brick with exact transmittance, lights at infinity by control variate (corrections go to `rays`
+/// under `owner`), two and more events by the path tracer. Pixels without smoke cost a bounds test.
 void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray, int owner,
-                PixelDomain& domain, LightRays& rays, FilmSample& sample, PassCounts& counts);
+                PassDomain& domain, LightRays& rays, FilmSample& sample, PassCounts& counts);
 
 /// What every pass of every pixel of a tile shows, if that is one and the same: a constant
 /// background, or none, and no medium that a ray of the tile may meet.

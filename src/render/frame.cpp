@@ -150,10 +150,6 @@ LayeredImage render_frame(const Scene& scene, const RenderDescription& render,
     const auto start = std::chrono::steady_clock::now();
     const double cpu_start = process_cpu_seconds();
     const AovSet aovs = parse_aovs(output.aovs);
-    if (scene.surfaces && render.estimator == EstimatorKind::Restir) {
-        throw Error(ExitCode::Input,
-                    "estimator \"restir\" cannot render [[objects]] yet; use \"path\"");
-    }
     const FrameInputs frame{scene, render, aovs, build_light_sampler(scene, render.path)};
     const Camera& camera = scene.camera;
     const FrameControl control{stop, tile_done};

@@ -24,6 +24,7 @@ struct FrameStats {
     int64_t cells = 0;               ///< walked by both
     int64_t uniform_bricks = 0;      ///< crossed by both in closed form, without cells
     int64_t candidates = 0;
+    int64_t surfaces = 0;            ///< passes of pixels that sampled a surface's light
     int64_t emission_integrals = 0;  ///< along camera rays; 0 if nothing glows
     int64_t histories_used = 0;      ///< pixels and passes that had a history with confidence
     int64_t neighbours_used = 0;     ///< reservoirs of neighbours that took part
@@ -65,8 +66,7 @@ class FrameHistory {
 /// premultiplied by nothing but the volumes themselves; A is 1 minus the mean transmittance.
 /// Attributes describe the camera. Empty image if stopped. Bit-identical for any thread count:
 /// every sample has its own random stream, keyed by (seed, frame, pixel, sample), and a pixel adds
-/// its samples in order. Throws Error(Input) for unknown
-/// layers, and for surfaces with the ReSTIR estimator, which cannot show them yet.
+/// its samples in order. Throws Error(Input) for unknown layers.
 [[nodiscard]] LayeredImage render_frame(const Scene& scene, const RenderDescription& render,
                                         const OutputDescription& output, FrameHistory& history,
                                         StopRequested stop, FrameStats& stats,

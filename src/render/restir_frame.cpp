@@ -5,6 +5,7 @@
 
 #include "core/parallel.h"
 #include "render/restir_reuse.h"
+#include "render/surface_pass.h"
 #include "restir/cache_stats.h"
 #include "restir/candidates.h"
 
@@ -14,10 +15,11 @@ namespace {
 /// What one tile works with; allocated once per tile, reused over its passes.
 struct TileScratch {
     LightRays rays;
+    LightRays surface_rays;
     std::vector<Candidate> candidates;
     std::vector<FilmSample> samples;
     std::vector<PixelFilm> pixels;
-    PixelDomain domain;
+    PassDomain domain;
 };
 
 void trace_tile_pass(const PassInputs& inputs, const Tile& tile, uint32_t pass,
@@ -25,6 +27,7 @@ void trace_tile_pass(const PassInputs& inputs, const Tile& tile, uint32_t pass,
 {
     const FrameDomain& frame = inputs.domain;
     scratch.rays.clear();
+    scratch.surface_rays.clear();
     int owner = 0;
     for (int y = tile.y0; y < tile.y1; ++y) {
         for (int x = tile.x0; x < tile.x1; ++x, ++owner) {
@@ -33,28 +36,39 @@ void trace_tile_pass(const PassInputs& inputs, const Tile& tile, uint32_t pass,
             sample = {};
             begin_pass(inputs, key, camera_ray(inputs, key), owner, scratch.domain, scratch.rays,
                        sample, counts);
-            const bool lit = frame.has_sampled_lights() && !scratch.domain.bins.empty() &&
-                             inputs.render.path.max_bounces > 0;
-            if (!lit) continue;
-            weigh_bins(frame, scratch.domain);
+            if (inputs.render.path.max_bounces == 0) continue;
+            if (scratch.domain.surface.is_sampled()) {
+                scratch.candidates.clear();
+                const PixelReservoir chosen = resample_surface(inputs, key, scratch.domain.surface,
+                                                               scratch.candidates, counts);
+                ask_for_light(frame, scratch.domain.surface, chosen.r, owner, scratch.surface_rays);
+                sample.work.x += static_cast<float>(scratch.candidates.size());
+            }
+            PixelDomain& domain = scratch.domain.media;
+            if (!frame.has_sampled_lights() || domain.bins.empty()) continue;
+            weigh_bins(frame, domain);
             Rng rng = pass_rng(inputs, key, Stream::Initial);
             scratch.candidates.clear();
-            draw_candidates(frame, scratch.domain, frame.params.candidates, rng,
-                            scratch.candidates);
+            draw_candidates(frame, domain, frame.params.candidates, rng, scratch.candidates);
             counts.candidates += static_cast<int64_t>(scratch.candidates.size());
-            sample.work.x = static_cast<float>(scratch.candidates.size());
+            sample.work.x += static_cast<float>(scratch.candidates.size());
             for (const Candidate& c : scratch.candidates) {
                 const Spectrum weight = c.f / c.density;
-                scratch.rays.add(owner, c.x, c.arrival.wi, c.arrival.distance,
-                                 scratch.domain.ray.time, weight,
-                                 depth_that_matters(weight, luminance(sample.L())));
+                scratch.rays.add(owner, c.x, c.arrival.wi, c.arrival.distance, domain.ray.time,
+                                 weight, depth_that_matters(weight, luminance(sample.L())));
             }
         }
     }
-    scratch.rays.trace(frame.scene->media, counts.light_rays);
+    scratch.rays.trace(*frame.scene, counts.light_rays);
     for (size_t i = 0; i < scratch.rays.size(); ++i) {
         FilmSample& sample = scratch.samples[static_cast<size_t>(scratch.rays.owners[i])];
         sample.direct += scratch.rays.value(i);
+        sample.exact_rays += 1.0f;
+    }
+    scratch.surface_rays.trace(*frame.scene, counts.light_rays);
+    for (size_t i = 0; i < scratch.surface_rays.size(); ++i) {
+        FilmSample& sample = scratch.samples[static_cast<size_t>(scratch.surface_rays.owners[i])];
+        sample.surface_direct += scratch.surface_rays.value(i);
         sample.exact_rays += 1.0f;
     }
 }
@@ -113,6 +127,7 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
     stats.uniform_bricks =
         counts.bins.uniform_bricks + static_cast<int64_t>(counts.light_rays.uniform_bricks);
     stats.candidates = counts.candidates;
+    stats.surfaces = counts.surfaces;
     stats.emission_integrals = counts.emission_integrals;
     stats.histories_used = counts.reuse.histories;
     stats.neighbours_used = counts.reuse.neighbours;

@@ -3,26 +3,32 @@
 #include <atomic>
 #include <mutex>
 
+#include "render/surface_pass.h"
 #include "restir/candidates.h"
+#include "restir/surface_reuse.h"
 
 namespace mote {
 namespace {
 
 /// Whole-image buffers of a pass under way.
 struct PassBuffers {
-    PassBuffers(int width, int height)
+    PassBuffers(int width, int height, bool has_surfaces)
         : samples(width, height),
           current(width, height),
           next(width, height),
           colors(width, height),
           acceptance(width, height)
     {
+        if (!has_surfaces) return;
+        surfaces = {Buffer2D<PixelReservoir>(width, height),
+                    Buffer2D<PixelReservoir>(width, height), Buffer2D<Spectrum>(width, height)};
     }
     Buffer2D<FilmSample> samples;
     Buffer2D<PixelReservoir> current;
     Buffer2D<PixelReservoir> next;
     Buffer2D<Spectrum> colors;  ///< of the sampled lights
     Buffer2D<Acceptance> acceptance;
+    SurfaceBuffers surfaces;
 };
 
 /// Everything of one frame's passes.
@@ -37,7 +43,8 @@ struct ReusingFrame {
     ReusingFrame(const PassInputs& in, const FrameControl& c, PassCounts& n)
         : inputs(in),
           control(c),
-          buffers(in.domain.scene->camera.width, in.domain.scene->camera.height),
+          buffers(in.domain.scene->camera.width, in.domain.scene->camera.height,
+                  in.domain.scene->surfaces != nullptr),
           counts(n)
     {
     }
@@ -65,8 +72,11 @@ struct ReusingFrame {
         });
     }
     /// `kept`: where rays are taken from; null: drawn.
-    void fill_initial(const Tile& tile, uint32_t pass, const DomainStore* kept,
-                      DomainStore& domains, PassCounts& n);
+    void fill_initial(const Tile& tile, uint32_t pass, const DomainStore* kept, FinishedPass& now,
+                      PassCounts& n);
+    /// All of a pass's work on surfaces, after fill_initial.
+    void pass_over_surfaces(const ReusePlan& plan, uint32_t pass, const FinishedPass& before,
+                            FinishedPass& now);
 };
 
 /// Candidates of one pixel in a tile's list.
@@ -76,7 +86,7 @@ struct CandidateRange {
 };
 
 void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, const DomainStore* kept,
-                                DomainStore& domains, PassCounts& n)
+                                FinishedPass& now, PassCounts& n)
 {
     const FrameDomain& frame = inputs.domain;
     LightRays corrections;
@@ -84,7 +94,8 @@ void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, const DomainSto
     std::vector<Candidate> candidates;
     std::vector<CandidateRange> ranges;
     std::vector<FilmSample*> samples;
-    PixelDomain domain;
+    PassDomain pass_domain;
+    PixelDomain& domain = pass_domain.media;
     for (int y = tile.y0; y < tile.y1; ++y) {
         for (int x = tile.x0; x < tile.x1; ++x) {
             const PassKey key{x, y, pass};
@@ -94,7 +105,9 @@ void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, const DomainSto
             const auto owner = static_cast<int>(samples.size());
             samples.push_back(&sample);
             const Ray ray = kept ? kept->ray(x, y) : camera_ray(inputs, key);
-            begin_pass(inputs, key, ray, owner, domain, corrections, sample, n);
+            begin_pass(inputs, key, ray, owner, pass_domain, corrections, sample, n);
+            if (inputs.render.path.max_bounces == 0) pass_domain.surface.share = 0.0f;
+            if (now.surfaces.size() > 0) now.surfaces.at(x, y) = pass_domain.surface;
             const size_t first = candidates.size();
             if (!domain.bins.empty() && inputs.render.path.max_bounces > 0) {
                 weigh_bins(frame, domain);
@@ -103,7 +116,7 @@ void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, const DomainSto
             } else {
                 domain.bins.count = 0;  // no event on this ray
             }
-            domains.store(x, y, domain);
+            now.domains.store(x, y, domain);
             ranges.push_back({first, candidates.size() - first});
             sample.exact_rays += static_cast<float>(candidates.size() - first);
             sample.work.x = static_cast<float>(candidates.size() - first);
@@ -119,13 +132,13 @@ void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, const DomainSto
         }
     }
     n.candidates += static_cast<int64_t>(candidates.size());
-    corrections.trace(frame.scene->media, n.light_rays);
+    corrections.trace(*frame.scene, n.light_rays);
     for (size_t i = 0; i < corrections.size(); ++i) {
         FilmSample& sample = *samples[static_cast<size_t>(corrections.owners[i])];
         sample.direct += corrections.value(i);
         sample.exact_rays += 1.0f;
     }
-    shadows.trace(frame.scene->media, n.light_rays);
+    shadows.trace(*frame.scene, n.light_rays);
     for (size_t i = 0; i < shadows.size(); ++i) {
         candidates[static_cast<size_t>(shadows.owners[i])].f = shadows.value(i);
     }
@@ -140,6 +153,41 @@ void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, const DomainSto
     }
 }
 
+void ReusingFrame::pass_over_surfaces(const ReusePlan& plan, uint32_t pass,
+                                      const FinishedPass& before, FinishedPass& now)
+{
+    const FrameDomain& frame = inputs.domain;
+    SurfaceBuffers& surfaces = buffers.surfaces;
+    for_tiles([&](const Tile& tile, PassCounts& n) {
+        fill_surface_reservoirs(inputs, tile, pass, now.surfaces, surfaces, n);
+    });
+    const ReuseOutput out{surfaces.next, surfaces.colors, buffers.acceptance};
+    if (plan.surface_temporal && before.surfaces.size() > 0) {
+        const bool still = !change_between(before.frame, frame).any();
+        for_tiles([&](const Tile& tile, PassCounts& n) {
+            Combination scratch(temporal_rules(frame.params, still));
+            reuse_surfaces_in_time({frame, now.surfaces, surfaces.current}, before, still, tile,
+                                   rng(Stream::SurfaceTemporal, pass), scratch, out, n.light_rays,
+                                   n.reuse);
+        });
+        std::swap(surfaces.current, surfaces.next);
+    }
+    if (plan.surface_spatial) {
+        for_tiles([&](const Tile& tile, PassCounts& n) {
+            Combination scratch(spatial_rules(frame.params));
+            reuse_surfaces_in_space({frame, now.surfaces, surfaces.current}, tile,
+                                    rng(Stream::SurfaceSpatial, pass), scratch, out, n.light_rays,
+                                    n.reuse);
+        });
+        std::swap(surfaces.current, surfaces.next);
+    }
+    for (size_t i = 0; i < now.surface_reservoirs.size(); ++i) {
+        now.surface_reservoirs.data()[i] = surfaces.current.data()[i].r;
+        buffers.samples.data()[i].surface_direct =
+            now.surfaces.data()[i].share * surfaces.colors.data()[i];
+    }
+}
+
 }  // namespace
 
 ReusePlan plan_reuse(const FrameDomain& domain, const RenderDescription& render,
@@ -151,19 +199,16 @@ ReusePlan plan_reuse(const FrameDomain& domain, const RenderDescription& render,
         plan.accumulates = plan.keeps_passes && change && !change->any();
         return plan;
     }
-    if (!domain.has_sampled_lights() || render.path.max_bounces == 0) return {};
-    switch (domain.params.reuse) {
-        case ReuseMode::Auto:
-        case ReuseMode::Off:
-            return {};
-        case ReuseMode::Temporal:
-            return {true, false};
-        case ReuseMode::Spatial:
-            return {false, true};
-        case ReuseMode::Both:
-            return {true, true};
-    }
-    return {};
+    if (render.path.max_bounces == 0) return {};
+    const ReuseMode mode = domain.params.reuse;
+    const bool temporal = mode == ReuseMode::Temporal || mode == ReuseMode::Both;
+    const bool spatial = mode == ReuseMode::Spatial || mode == ReuseMode::Both;
+    ReusePlan plan;
+    plan.temporal = temporal && domain.has_sampled_lights();
+    plan.spatial = spatial && domain.has_sampled_lights();
+    plan.surface_temporal = temporal && domain.scene->surfaces;
+    plan.surface_spatial = spatial && domain.scene->surfaces;
+    return plan;
 }
 
 bool render_reusing_passes(const PassInputs& inputs, const ReusePlan& plan,
@@ -182,14 +227,19 @@ bool render_reusing_passes(const PassInputs& inputs, const ReusePlan& plan,
     // Where nothing changed a pixel keeps its camera ray: history then fits exactly. On another ray
     // through the pixel it is worth less than nothing (measured: ten times the noise). Several
     // passes of one frame need rays of their own to cover the pixel.
-    const bool keeps_rays = plan.temporal && inputs.render.samples == 1 && !before.empty() &&
+    const bool keeps_rays = (plan.temporal || plan.surface_temporal) &&
+                            inputs.render.samples == 1 && !before.empty() &&
                             !change_between(before.frame, frame).any();
     for (uint32_t pass = 0; pass < static_cast<uint32_t>(inputs.render.samples); ++pass) {
         FinishedPass now{frame, DomainStore(width, height), Buffer2D<Reservoir>(width, height)};
+        if (frame.scene->surfaces) {
+            now.surfaces = Buffer2D<SurfaceDomain>(width, height);
+            now.surface_reservoirs = Buffer2D<Reservoir>(width, height);
+        }
         const DomainStore* kept = keeps_rays ? &before.domains : nullptr;
-        run.for_tiles([&](const Tile& tile, PassCounts& n) {
-            run.fill_initial(tile, pass, kept, now.domains, n);
-        });
+        run.for_tiles(
+            [&](const Tile& tile, PassCounts& n) { run.fill_initial(tile, pass, kept, now, n); });
+        if (frame.scene->surfaces) run.pass_over_surfaces(plan, pass, before, now);
         const ReuseOutput out{buffers.next, buffers.colors, buffers.acceptance};
         if (plan.temporal && !before.empty()) {
             const bool still = !change_between(before.frame, frame).any();

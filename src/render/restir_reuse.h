@@ -9,10 +9,13 @@ namespace mote {
 struct ReusePlan {
     bool temporal = false;
     bool spatial = false;
+    bool surface_temporal = false;
+    bool surface_spatial = false;
     bool keeps_passes = false;  ///< this frame's passes may count for the next frames too
     bool accumulates = false;   ///< and those of the frames before count for this one
 
-    [[nodiscard]] bool reuses_samples() const { return temporal || spatial; }
+    [[nodiscard]] bool reuses_samples() const { return temporal || spatial || reuses_surfaces(); }
+    [[nodiscard]] bool reuses_surfaces() const { return surface_temporal || surface_spatial; }
 };
 
 /// What the frame reuses. `auto`: where frames of one pass each show a scene that does not change,

@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include "core/distribution.h"
-#include "restir/phase_candidates.h"
+#include "restir/direction_hits.h"
+#include "restir/mixed_phase.h"
 #include "scene/environment.h"
 
 namespace mote {
@@ -20,11 +21,7 @@ bool set_contribution(const FrameDomain& frame, const PixelDomain& domain, const
     return is_finite(c.f) && max_component(c.f) > 0.0f;
 }
 
-/// A point of a chosen light, in the sample's own measure; its density there.
-struct LightPoint {
-    Vec3 v{0.0f};
-    float density = 1.0f;
-};
+}  // namespace
 
 std::optional<LightPoint> sample_light_point(const FrameDomain& frame, const SampledLight& light,
                                              float time, Rng& rng)
@@ -50,8 +47,6 @@ std::optional<LightPoint> sample_light_point(const FrameDomain& frame, const Sam
     }
     return std::nullopt;
 }
-
-}  // namespace
 
 Candidate evaluate(const FrameDomain& frame, const PixelDomain& domain, const PathSample& y)
 {
@@ -81,6 +76,8 @@ void draw_candidates(const FrameDomain& frame, const PixelDomain& domain, int co
         const RayPoint point = point_at(frame, domain, c.y.u);
         if (!(point.weight > 0.0f)) continue;
         c.x = point.x;
+        MixedPhase phase;
+        if (frame.phase_finds.any()) phase = mixed_phase_at(frame.scene->media, point.x, time);
 
         // Golden-ratio steps: few lights per pixel, far apart in the cell's order. In double: among
         // thousands of lamps a float's steps are as large as the share of one.
@@ -95,24 +92,32 @@ void draw_candidates(const FrameDomain& frame, const PixelDomain& domain, int co
                 c.y.v = light_point->v;
                 if (const auto arrival = light_at(frame, c.y, point.x, time)) {
                     c.arrival = *arrival;
-                    const float phase_density =
-                        phase_candidate_density(frame, point.x, time, wo, c.y, *arrival);
-                    c.density = static_cast<float>(count) *
-                                (choice.pmf * light_point->density + phase_density);
+                    c.density = choice.pmf * light_point->density;
+                    if (!phase.empty()) {
+                        c.density += phase.pdf(wo, arrival->wi) *
+                                     density_per_direction(frame, frame.phase_finds, point.x, time,
+                                                           c.y, *arrival);
+                    }
+                    c.density *= static_cast<float>(count);
                     if (set_contribution(frame, domain, point, c)) out.push_back(c);
                 }
             }
         }
-        if (!frame.has_phase_candidates) continue;
-        for_each_phase_hit(frame, point.x, time, wo, rng, [&](const PhaseHit& hit) {
+        if (phase.empty()) continue;
+        const float u_phase = rng.uniform();
+        const Vec3 wi = phase.sample(wo, u_phase, rng.uniform2());
+        const float pdf_dir = phase.pdf(wo, wi);
+        const auto add_hit = [&](const DirectionHit& hit) {
             Candidate p;
             p.y = {c.y.u, hit.light, hit.v};
             p.x = point.x;
             p.arrival = hit.arrival;
             const float pmf = light_pmf(frame, hit.light, point.x, wo);
-            p.density = static_cast<float>(count) * (pmf * hit.light_density + hit.phase_density);
+            p.density =
+                static_cast<float>(count) * (pmf * hit.light_density + pdf_dir * hit.per_direction);
             if (set_contribution(frame, domain, point, p)) out.push_back(p);
-        });
+        };
+        for_each_light_along(frame, frame.phase_finds, {point.x, wi, time}, rng.uniform(), add_hit);
     }
 }
 

@@ -11,12 +11,22 @@ namespace mote {
 /// A sample with what it would bring if nothing stood between the event and the light.
 struct Candidate {
     PathSample y;
-    Vec3 x{0.0f};          ///< the event [m]
+    Vec3 x{0.0f};          ///< the event, where the shadow ray starts [m]
     Arrival arrival;       ///< direction and distance of the shadow ray
     Spectrum f{0.0f};      ///< contribution over the density of u, transmittance to the light apart
     float density = 0.0f;  ///< expected number of such candidates per unit of the sample's measure:
                            ///< the estimate is the sum of f T / density
+    float known = 1.0f;    ///< what the target knows of T without a ray; > 0
 };
+
+/// A point of a chosen light, in the sample's own measure; its density there.
+struct LightPoint {
+    Vec3 v{0.0f};
+    float density = 1.0f;
+};
+[[nodiscard]] std::optional<LightPoint> sample_light_point(const FrameDomain& frame,
+                                                           const SampledLight& light, float time,
+                                                           Rng& rng);
 
 /// What sample y brings in a pixel's domain, the transmittance of its shadow ray apart; f is black
 /// where it brings nothing. density is not set.

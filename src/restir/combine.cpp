@@ -27,7 +27,7 @@ PixelReservoir resample(std::span<const Candidate> candidates, Rng& rng, Spectru
     PixelReservoir out;
     color = Spectrum(0.0f);
     for (const Candidate& c : candidates) {
-        const float p_hat = luminance(c.f);
+        const float p_hat = c.known * luminance(c.f);
         color += c.f / c.density;
         const double w = static_cast<double>(p_hat) / static_cast<double>(c.density);
         if (stream.add(c.y, p_hat, w, 0.0f, rng.uniform())) out.f = c.f;
@@ -50,8 +50,43 @@ int Combination::begin_pixel(const PixelReservoir& own)
     return static_cast<int>(pixels_.size()) - 1;
 }
 
+std::optional<Combination::Shifted> Combination::shifted(const PathSample& y, const ShiftEnd& from,
+                                                         const ShiftEnd& to,
+                                                         const RayMap& map) const
+{
+    const std::optional<ShiftedSample> sample = shift(rules_.shift, y, from, to, map);
+    if (!sample) return std::nullopt;
+    Shifted out{evaluate(to.frame, to.domain, sample->y), sample->jacobian, to.domain.ray.time};
+    out.c.known = known_visibility(rules_.visibility, to.frame, out.c);
+    return out;
+}
+
 void Combination::add_other(const ShiftEnd& own, const ShiftEnd& from, const Reservoir& other,
                             float confidence, const RayMap& map)
+{
+    const Reservoir& mine = pixels_.back().own->r;
+    std::optional<Shifted> here;
+    std::optional<Shifted> own_there;
+    if (other.W > 0.0f) here = shifted(other.y, from, own, map);
+    if (mine.W > 0.0f) own_there = shifted(mine.y, own, from, map.inverse());
+    add(other, confidence, here, own_there);
+}
+
+void Combination::add_other(const SurfaceEnd& own, const SurfaceEnd& from, const Reservoir& other,
+                            float confidence)
+{
+    const auto taken = [&](const Reservoir& r, const SurfaceEnd& a,
+                           const SurfaceEnd& b) -> std::optional<Shifted> {
+        if (!(r.W > 0.0f) || !has_equal_measure(a.frame, b.frame, r.y.light)) return std::nullopt;
+        Shifted out{evaluate(b.frame, b.domain, r.y), 1.0f, b.domain.time};
+        out.c.known = known_visibility(rules_.visibility, b.frame, out.c);
+        return out;
+    };
+    add(other, confidence, taken(other, from, own), taken(pixels_.back().own->r, own, from));
+}
+
+void Combination::add(const Reservoir& other, float confidence, const std::optional<Shifted>& here,
+                      const std::optional<Shifted>& own_there)
 {
     Pixel& pixel = pixels_.back();
     const size_t index = others_.size();
@@ -61,35 +96,25 @@ void Combination::add_other(const ShiftEnd& own, const ShiftEnd& from, const Res
     out.W = other.W;
     out.M = confidence;
     out.age = other.age;
-    if (other.W > 0.0f) {
-        if (const auto shifted = shift(rules_.shift, other.y, from, own, map)) {
-            const Candidate c = evaluate(own.frame, own.domain, shifted->y);
-            out.y = shifted->y;
-            out.jacobian = shifted->jacobian;
-            out.f = c.f;
-            if (rules_.visibility == TargetVisibility::Exact) {
-                ask(here_, index, c, own.domain.ray.time, 1.0f);
-            } else {
-                out.shadow = known_visibility(rules_.visibility, own.frame, c);
-            }
-        }
+    const bool asks = rules_.visibility == TargetVisibility::Exact;
+    if (here) {
+        out.y = here->c.y;
+        out.jacobian = here->jacobian;
+        out.f = here->c.f;
+        out.shadow = here->c.known;
+        if (asks) ask(here_, index, here->c, here->time, 1.0f);
     }
-    const Reservoir& mine = pixel.own->r;
-    if (mine.W > 0.0f) {
-        if (const auto shifted = shift(rules_.shift, mine.y, own, from, map.inverse())) {
-            const Candidate c = evaluate(from.frame, from.domain, shifted->y);
-            if (rules_.visibility != TargetVisibility::Exact) {
-                out.own_there = shifted->jacobian * luminance(c.f) *
-                                known_visibility(rules_.visibility, from.frame, c);
-                return;
-            }
-            ask(there_, index, c, from.domain.ray.time, shifted->jacobian);
-        }
+    if (own_there) {
+        const Candidate& c = own_there->c;
+        out.own_there = own_there->jacobian * c.known * luminance(c.f);
+        if (asks) ask(there_, index, c, own_there->time, own_there->jacobian);
     }
 }
 
-void Combination::trace(const Media& here, const Media& there, WalkCounts& counts)
+void Combination::trace(const Scene& here, const Scene& there, WalkCounts& counts)
 {
+    if (rules_.visibility != TargetVisibility::Exact) return;
+    for (Other& other : others_) other.shadow = other.own_there = 0.0f;
     here_.trace(here, counts);
     for (size_t i = 0; i < here_.size(); ++i) {
         others_[static_cast<size_t>(here_.owners[i])].shadow = std::exp(-here_.depths[i]);

@@ -8,6 +8,7 @@
 #include "restir/pass_state.h"
 #include "restir/reuse_mis.h"
 #include "restir/shift.h"
+#include "restir/surface_domain.h"
 
 namespace mote {
 
@@ -18,8 +19,8 @@ struct CombineRules {
     TargetVisibility visibility = TargetVisibility::Exact;
 };
 
-/// A pixel's own reservoir from its candidates, whose f are to be complete, shadows included:
-/// streaming RIS with luminance(f) as target. `color` becomes the sum over all candidates.
+/// A pixel's own reservoir from its candidates: streaming RIS with known * luminance(f) as target.
+/// `color` becomes the sum over all candidates: their light, if f is complete, shadows included.
 [[nodiscard]] PixelReservoir resample(std::span<const Candidate> candidates, Rng& rng,
                                       Spectrum& color);
 
@@ -45,10 +46,13 @@ class Combination {
     /// `map` leads from the other's ray to the own; ends must be valid during this call only.
     void add_other(const ShiftEnd& own, const ShiftEnd& from, const Reservoir& other,
                    float confidence, const RayMap& map);
+    /// The same on surfaces, which take samples as they are.
+    void add_other(const SurfaceEnd& own, const SurfaceEnd& from, const Reservoir& other,
+                   float confidence);
 
-    /// Traces the shadow rays: `here` are the media of the pixels' own domains, `there` those of
-    /// the others' (the same for neighbours).
-    void trace(const Media& here, const Media& there, WalkCounts& counts);
+    /// Traces the shadow rays: `here` is the scene of the pixels' own domains, `there` that of the
+    /// others' (the same for neighbours).
+    void trace(const Scene& here, const Scene& there, WalkCounts& counts);
 
     /// Result of one pixel. `color` becomes the estimate of its light: all inputs shaded with their
     /// MIS weights, which has the mean of shading the chosen sample and less noise, at no cost. The
@@ -72,6 +76,17 @@ class Combination {
         size_t first = 0;
         size_t count = 0;
     };
+
+    /// A sample in a domain that it was shifted to.
+    struct Shifted {
+        Candidate c;
+        float jacobian = 1.0f;
+        float time = 0.0f;  ///< of its shadow ray
+    };
+    void add(const Reservoir& other, float confidence, const std::optional<Shifted>& here,
+             const std::optional<Shifted>& own_there);
+    [[nodiscard]] std::optional<Shifted> shifted(const PathSample& y, const ShiftEnd& from,
+                                                 const ShiftEnd& to, const RayMap& map) const;
 
     CombineRules rules_;
     std::vector<Pixel> pixels_;

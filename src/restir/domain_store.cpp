@@ -25,6 +25,7 @@ void DomainStore::load(int x, int y, PixelDomain& domain) const
 {
     const Header& header = headers_.at(x, y);
     domain.ray = header.ray;
+    domain.surface.reset();  // samples in media do not need it
     RayBins& bins = domain.bins;
     bins.t0 = header.t0;
     bins.count = header.count;

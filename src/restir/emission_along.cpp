@@ -63,7 +63,7 @@ Spectrum emission_along(const FrameDomain& frame, const PixelDomain& domain, Rng
     for (const Volume& volume : media.volumes) {
         has_source |= volume.emission_params.blackbody_scale > 0.0f;
         sum += estimate_grid_emission(
-            volume, domain.ray, {0.0f, infinity}, cells_per_lookup, rng, [&](float t, Vec3) {
+            volume, domain.ray, {0.0f, domain.t_end()}, cells_per_lookup, rng, [&](float t, Vec3) {
                 const auto s = static_cast<float>(static_cast<double>(t) - domain.bins.t0);
                 return std::exp(-depth_to(media, domain.ray, domain.bins, s));
             });

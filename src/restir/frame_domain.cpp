@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "restir/phase_candidates.h"
-
 namespace mote {
 namespace {
 
@@ -18,6 +16,33 @@ float cut_of(const Scene& scene)
         return !std::holds_alternative<DistantLight>(l);
     });
     return local ? 1e-12f : 1e-8f;
+}
+
+/// Lobes narrower than this often meet spheres that light sampling finds at the lobe's edge.
+constexpr float narrow_g = 0.7f;
+
+bool has_narrow_lobes(const Media& media)
+{
+    return std::any_of(media.volumes.begin(), media.volumes.end(), [](const Volume& volume) {
+        const Phase& phase = volume.phase;
+        return std::abs(phase.g) > narrow_g ||
+               (phase.weight_b > 0.0f && std::abs(phase.g_b) > narrow_g);
+    });
+}
+
+/// All that the scene has. Light sampling is unbounded close to quads and triangles and inside
+/// emissive volumes, so these are always looked for.
+DirectionTargets targets_of(const Scene& scene, const LightCaches& caches)
+{
+    DirectionTargets out;
+    out.environment = scene.environment.has_value();
+    for (const Light& light : scene.lights) {
+        out.quads |= std::holds_alternative<QuadLight>(light);
+        out.spheres |= std::holds_alternative<SphereLight>(light);
+        out.triangles |= std::holds_alternative<TriangleLight>(light);
+    }
+    for (const auto& bricks : caches.emissive) out.emissive_volumes |= bricks.has_value();
+    return out;
 }
 
 }  // namespace
@@ -39,6 +64,11 @@ FrameDomain make_frame_domain(std::shared_ptr<const Scene> scene,
             distant);
     }
     frame.has_motion = scene->camera.world_from_camera.is_moving();
+    if (scene->surfaces) {
+        for (const MeshInstance& instance : scene->surfaces->bvh->instances()) {
+            frame.has_motion |= instance.world_from_object.is_moving();
+        }
+    }
     for (size_t i = 0; i < scene->media.volumes.size(); ++i) {
         frame.has_motion |= scene->media.volumes[i].world_from_object.is_moving();
         frame.has_emission |= scene->media.volumes[i].emission_params.is_on();
@@ -50,14 +80,11 @@ FrameDomain make_frame_domain(std::shared_ptr<const Scene> scene,
     frame.samples_local = caches->cells && !caches->cells->is_empty();
     frame.scene = std::move(scene);
     frame.caches = std::move(caches);
-    for (size_t i = 0; i < frame.lights.size(); ++i) {
-        const bool sampled =
-            frame.lights[i].kind != SampledLightKind::Environment || !params.control_variate;
-        if (sampled && is_found_by_phase(frame, static_cast<int>(i))) {
-            frame.phase_lights.push_back(static_cast<int>(i));
-        }
-    }
-    frame.has_phase_candidates = !frame.phase_lights.empty();
+    frame.lamp_surfaces = std::make_shared<const LampSurfaces>(frame.scene->lights);
+    frame.bsdf_finds = targets_of(*frame.scene, *frame.caches);
+    frame.phase_finds = frame.bsdf_finds;
+    frame.phase_finds.environment &= !params.control_variate;
+    frame.phase_finds.spheres &= has_narrow_lobes(frame.scene->media);
     return frame;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "restir/light_caches.h"
+#include "scene/lamp_surfaces.h"
 #include "scene/restir_params.h"
 #include "scene/scene.h"
 
@@ -18,6 +19,21 @@ struct SampledLight {
     int index = 0;  ///< into Scene::lights or Media::volumes; 0 for the environment
 };
 
+/// Which lights are also looked for by directions drawn from a phase function or a BSDF. What is
+/// not, is found by its own sampling alone.
+struct DirectionTargets {
+    bool environment = false;
+    bool quads = false;
+    bool spheres = false;
+    bool triangles = false;  ///< of emissive surfaces
+    bool emissive_volumes = false;
+
+    [[nodiscard]] bool any() const
+    {
+        return environment || quads || spheres || triangles || emissive_volumes;
+    }
+};
+
 /// Everything outside the pixel that a sample's value depends on, frozen while a pass runs: the
 /// media, the lights, the caches. The previous pass's is kept as long as its samples are.
 struct FrameDomain {
@@ -28,11 +44,11 @@ struct FrameDomain {
     std::vector<SampledLight> lights;
     bool samples_local = false;  ///< lamps and emissive volumes take part in the candidates
     std::vector<int> infinite;   ///< of `lights`: those at infinity that do so too
-    /// Of `lights`: those that phase-function directions look for, see phase_candidates.h.
-    std::vector<int> phase_lights;
-    bool has_phase_candidates = false;
+    std::shared_ptr<const LampSurfaces> lamp_surfaces;
+    DirectionTargets phase_finds;     ///< what directions from phase functions look for
+    DirectionTargets bsdf_finds;      ///< and those from surfaces
     bool has_emission = false;        ///< some medium glows
-    bool has_motion = false;          ///< camera or media move while the shutter is open
+    bool has_motion = false;          ///< anything moves while the shutter is open
     float transmittance_cut = 1e-7f;  ///< where camera rays may end, see make_ray_bins
 
     [[nodiscard]] bool has_sampled_lights() const { return samples_local || !infinite.empty(); }

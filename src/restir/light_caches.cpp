@@ -132,14 +132,18 @@ std::shared_ptr<const LightCaches> make_light_caches(
     auto out = std::make_shared<LightCaches>();
     out->media = media_key(scene.media);
     const std::vector<Volume>& volumes = scene.media.volumes;
-    if (std::all_of(volumes.begin(), volumes.end(), is_void) || !media_in_view(scene)) {
+    const bool in_view =
+        !std::all_of(volumes.begin(), volumes.end(), is_void) && media_in_view(scene);
+    if (!in_view && !scene.surfaces) {
         out->emissive.resize(volumes.size());
         return out;
     }
     const bool same_media = previous && previous->media == out->media;
     const Builder builder{scene, sizes, previous.get(), same_media, *out};
-    builder.add_distant();
-    builder.add_environment();
+    if (in_view) {
+        builder.add_distant();
+        builder.add_environment();
+    }
     builder.add_local();
     return out;
 }

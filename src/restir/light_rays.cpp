@@ -21,10 +21,26 @@ void LightRays::add(int owner, Vec3 x, Vec3 wi, float distance, float time, Spec
     owners.push_back(owner);
 }
 
-void LightRays::trace(const Media& media, WalkCounts& counts)
+void LightRays::trace(const Scene& scene, WalkCounts& counts)
 {
     depths.resize(queries.size());
-    optical_depths(media, queries, depths, counts);
+    if (!scene.surfaces) {
+        optical_depths(scene.media, queries, depths, counts);
+        return;
+    }
+    // Media are walked only where no surface is in the way.
+    std::vector<DepthQuery> open;
+    std::vector<size_t> places;
+    for (size_t i = 0; i < queries.size(); ++i) {
+        const DepthQuery& q = queries[i];
+        depths[i] = infinity;
+        if (is_shadowed(*scene.surfaces, {q.o, q.d, q.time}, q.t1)) continue;
+        open.push_back(q);
+        places.push_back(i);
+    }
+    std::vector<float> open_depths(open.size());
+    optical_depths(scene.media, open, open_depths, counts);
+    for (size_t i = 0; i < open.size(); ++i) depths[places[i]] = open_depths[i];
 }
 
 float depth_that_matters(Spectrum weight, float pixel_luminance)

@@ -3,12 +3,14 @@
 #include <span>
 #include <vector>
 
+#include "scene/scene.h"
 #include "volumes/depth_batch.h"
 
 namespace mote {
 
 /// Rays towards lights, gathered over a tile and traced together. Each brings weight * T to its
-/// owner (a pixel of the tile, or a term of one), T the exact transmittance of its segment.
+/// owner (a pixel of the tile, or a term of one), T the exact transmittance of its segment: 0 if a
+/// surface is in between.
 struct LightRays {
     std::vector<DepthQuery> queries;
     std::vector<Spectrum> weights;
@@ -19,7 +21,7 @@ struct LightRays {
     /// A ray from x along wi. Rays whose weight is black are left out.
     void add(int owner, Vec3 x, Vec3 wi, float distance, float time, Spectrum weight,
              float tau_max);
-    void trace(const Media& media, WalkCounts& counts);
+    void trace(const Scene& scene, WalkCounts& counts);
     [[nodiscard]] size_t size() const { return queries.size(); }
     /// What ray i brings.
     [[nodiscard]] Spectrum value(size_t i) const { return weights[i] * std::exp(-depths[i]); }

@@ -2,6 +2,7 @@
 
 #include "restir/domain_store.h"
 #include "restir/reservoir.h"
+#include "restir/surface_domain.h"
 
 namespace mote {
 
@@ -13,11 +14,14 @@ struct PixelReservoir {
 };
 
 /// A pass that later ones may reuse: what its samples depend on, and the samples. Everything per
-/// pixel: 36 bytes of reservoir and the packed domain.
+/// pixel: 36 bytes of reservoir and the packed domain; with surfaces another reservoir and 150
+/// bytes of surface domain.
 struct FinishedPass {
     FrameDomain frame;
     DomainStore domains;
     Buffer2D<Reservoir> reservoirs;
+    Buffer2D<SurfaceDomain> surfaces{};  ///< empty: the scene has none
+    Buffer2D<Reservoir> surface_reservoirs{};
 
     [[nodiscard]] bool empty() const { return domains.empty(); }
 };

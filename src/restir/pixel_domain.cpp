@@ -20,8 +20,11 @@ constexpr float even_share = 0.01f;
 void make_pixel_domain(const FrameDomain& frame, const Ray& ray, PixelDomain& domain,
                        BinCounts& counts)
 {
+    const Scene& scene = *frame.scene;
     domain.ray = ray;
-    make_ray_bins(frame.scene->media, ray, frame.transmittance_cut, domain.bins, counts);
+    domain.surface.reset();
+    if (scene.surfaces) domain.surface = intersect(*scene.surfaces, ray, {0.0f, infinity});
+    make_ray_bins(scene.media, ray, frame.transmittance_cut, domain.bins, counts, domain.t_end());
     domain.cdf[domain.bins.count] = 0.0f;
 }
 

@@ -17,14 +17,16 @@ namespace mote {
 struct PixelDomain {
     Ray ray;
     RayBins bins;
-    float cdf[RayBins::capacity + 1];  ///< cumulative weights at the edges; cdf[0] = 0
+    float cdf[RayBins::capacity + 1];   ///< cumulative weights at the edges; cdf[0] = 0
+    std::optional<SurfaceHit> surface;  ///< what ends the ray, smoke in front of it or not
 
     [[nodiscard]] Vec3 wo() const { return -ray.d; }
+    [[nodiscard]] float t_end() const { return surface ? surface->t : infinity; }
     /// Sum of all weights; 0: the pixel's reservoir stays empty.
     [[nodiscard]] float Z() const { return bins.empty() ? 0.0f : cdf[bins.count]; }
 };
 
-/// Bins of the ray, without weights.
+/// Surface and bins of the ray, without weights.
 void make_pixel_domain(const FrameDomain& frame, const Ray& ray, PixelDomain& domain,
                        BinCounts& counts);
 

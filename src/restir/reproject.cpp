@@ -73,6 +73,7 @@ Change change_between(const FrameDomain& before, const FrameDomain& now)
                                 [](const Light& p, const Light& q) { return is_same(p, q); }) ||
                     a.environment.has_value() != b.environment.has_value() ||
                     (a.environment && !is_same(*a.environment, *b.environment));
+    change.surfaces = !is_same(a.surfaces.get(), b.surfaces.get());
     return change;
 }
 

@@ -19,11 +19,12 @@ struct Change {
     bool camera = false;
     bool media = false;
     bool lights = false;
+    bool surfaces = false;
 
-    [[nodiscard]] bool any() const { return camera || media || lights; }
+    [[nodiscard]] bool any() const { return camera || media || lights || surfaces; }
 };
 
-/// Compares cameras, grids, transforms and lights. Cheap: grids by identity.
+/// Compares cameras, grids, meshes, transforms and lights. Cheap: grids and meshes by identity.
 [[nodiscard]] Change change_between(const FrameDomain& before, const FrameDomain& now);
 
 /// Follows the point at the middle of the ray's collisions (cumulative share 1/2: pixel data, no

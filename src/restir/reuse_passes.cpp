@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "restir/neighbours.h"
+
 namespace mote {
 namespace {
 
@@ -16,7 +18,8 @@ float cap_of(const TemporalParams& params, bool still)
     return still ? still_cap : moving_cap;
 }
 
-/// Runs finish for all pixels of a tile, in order.
+}  // namespace
+
 void finish_tile(const Tile& tile, const PixelRng& rng, const Combination& combination,
                  const ReuseOutput& out)
 {
@@ -28,8 +31,6 @@ void finish_tile(const Tile& tile, const PixelRng& rng, const Combination& combi
         }
     }
 }
-
-}  // namespace
 
 CombineRules temporal_rules(const RestirParams& params, bool still)
 {
@@ -93,7 +94,7 @@ void reuse_in_time(const PassView& pass, const FinishedPass& before, bool still,
             scratch.add_other({pass.frame, own}, {before.frame, earlier}, aged, confidence, map);
         }
     }
-    scratch.trace(pass.frame.scene->media, before.frame.scene->media, walks);
+    scratch.trace(*pass.frame.scene, *before.frame.scene, walks);
     finish_tile(tile, rng, scratch, out);
 }
 
@@ -114,29 +115,21 @@ void reuse_in_space(const PassView& pass, const Tile& tile, const PixelRng& rng,
             Rng numbers = rng(x, y);
             const float turn = 2.0f * pi * numbers.uniform();
             Acceptance& acceptance = out.acceptance.at(x, y);
-            for (int i = 0; i < params.neighbours; ++i) {
-                // Vogel's spiral: even in area, at the golden angle.
-                ++acceptance.asked;
-                const float share =
-                    (static_cast<float>(i) + 0.5f) / static_cast<float>(params.neighbours);
-                const float radius = std::max(1.0f, params.radius_px * std::sqrt(share));
-                const float angle = turn + 2.39996323f * static_cast<float>(i);
-                const int nx = x + static_cast<int>(std::lround(radius * std::cos(angle)));
-                const int ny = y + static_cast<int>(std::lround(radius * std::sin(angle)));
-                if (nx < 0 || ny < 0 || nx >= pass.domains.width() || ny >= pass.domains.height()) {
-                    continue;
-                }
-                if ((nx == x && ny == y) || !(pass.domains.depth(nx, ny) > 0.0f)) continue;
+            acceptance.asked = static_cast<uint16_t>(acceptance.asked + params.neighbours);
+            const auto combine = [&](int nx, int ny) {
+                if (!(pass.domains.depth(nx, ny) > 0.0f)) return;
                 ++counts.neighbours;
                 ++acceptance.used;
                 pass.domains.load(nx, ny, other);
                 const Reservoir& reservoir = pass.reservoirs.at(nx, ny).r;
                 scratch.add_other({pass.frame, own}, {pass.frame, other}, reservoir, reservoir.M,
                                   make_ray_map(other.ray, own.ray, Vec3(0.0f)));
-            }
+            };
+            for_each_neighbour(x, y, pass.domains.width(), pass.domains.height(), params.neighbours,
+                               params.radius_px, turn, combine);
         }
     }
-    scratch.trace(pass.frame.scene->media, pass.frame.scene->media, walks);
+    scratch.trace(*pass.frame.scene, *pass.frame.scene, walks);
     finish_tile(
         tile,
         [&](int x, int y) {
@@ -165,7 +158,7 @@ void shade_chosen(const PassView& pass, const Tile& tile, Buffer2D<Spectrum>& co
                      infinity);
         }
     }
-    rays.trace(pass.frame.scene->media, walks);
+    rays.trace(*pass.frame.scene, walks);
     for (size_t i = 0; i < rays.size(); ++i) {
         tile_colors[static_cast<size_t>(rays.owners[i])] = rays.value(i);
     }

@@ -40,6 +40,10 @@ struct ReuseOutput {
     Buffer2D<Acceptance>& acceptance;  ///< added to
 };
 
+/// Finishes the combinations of all pixels of a tile, begun in order.
+void finish_tile(const Tile& tile, const PixelRng& rng, const Combination& combination,
+                 const ReuseOutput& out);
+
 /// Combines each pixel of a tile with the pixel it was in the pass before (or in the frame before,
 /// by motion), whose confidence is capped and scaled by profile_agreement. Reads frozen buffers, so
 /// the result does not depend on tile order. Unbiased for any change of camera, media and lights:

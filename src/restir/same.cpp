@@ -37,6 +37,21 @@ bool is_same(const EnvironmentLight& a, const EnvironmentLight& b)
     return a.radiance == b.radiance && a.map == b.map && a.map_from_world == b.map_from_world;
 }
 
+bool is_same(const Surfaces* a, const Surfaces* b)
+{
+    if (a == b || !a || !b) return a == b;
+    const auto& p = a->bvh->instances();
+    const auto& q = b->bvh->instances();
+    if (p.size() != q.size() || !(a->materials == b->materials)) return false;
+    for (size_t i = 0; i < p.size(); ++i) {
+        if (p[i].mesh != q[i].mesh || !is_same(p[i].world_from_object, q[i].world_from_object) ||
+            a->objects[i].material != b->objects[i].material) {
+            return false;
+        }
+    }
+    return true;
+}
+
 bool is_same_look(const Volume& a, const Volume& b)
 {
     const Emission& e = a.emission_params;

@@ -10,6 +10,8 @@ namespace mote {
 [[nodiscard]] bool is_same(const MovingTransform& a, const MovingTransform& b);
 [[nodiscard]] bool is_same(const Light& a, const Light& b);
 [[nodiscard]] bool is_same(const EnvironmentLight& a, const EnvironmentLight& b);
+/// null: none.
+[[nodiscard]] bool is_same(const Surfaces* a, const Surfaces* b);
 
 /// Whether two volumes scatter and glow alike where they have the same density.
 [[nodiscard]] bool is_same_look(const Volume& a, const Volume& b);

@@ -6,16 +6,6 @@
 namespace mote {
 namespace {
 
-/// Whether the light's part of a sample means the same kind of thing in both frames. Where lights
-/// come and go their numbers move, and a lamp's random numbers are no direction to the sky: then
-/// neither frame could have made the other's sample.
-bool has_equal_measure(const FrameDomain& from, const FrameDomain& to, int light)
-{
-    const auto i = static_cast<size_t>(light);
-    return light >= 0 && i < from.lights.size() && i < to.lights.size() &&
-           from.lights[i].kind == to.lights[i].kind;
-}
-
 float collided_share(const RayBins& bins)
 {
     return -std::expm1(-bins.depth());
@@ -63,6 +53,13 @@ std::optional<ShiftedSample> shift_fraction(const PathSample& y, const ShiftEnd&
 }
 
 }  // namespace
+
+bool has_equal_measure(const FrameDomain& from, const FrameDomain& to, int light)
+{
+    const auto i = static_cast<size_t>(light);
+    return light >= 0 && i < from.lights.size() && i < to.lights.size() &&
+           from.lights[i].kind == to.lights[i].kind;
+}
 
 RayMap make_ray_map(const Ray& from, const Ray& to, Vec3 motion)
 {

@@ -36,6 +36,11 @@ struct ShiftEnd {
     const PixelDomain& domain;
 };
 
+/// Whether the light's part of a sample means the same kind of thing in both frames. Where lights
+/// come and go their numbers move, and a lamp's random numbers are no direction to the sky: then
+/// neither frame could have made the other's sample.
+[[nodiscard]] bool has_equal_measure(const FrameDomain& from, const FrameDomain& to, int light);
+
 /// Takes a sample from one domain to another. The light's part is copied (its measure does not
 /// depend on the pixel); the distance goes by `kind`:
 ///   RandomNumbers  u' = u. Jacobian 1.

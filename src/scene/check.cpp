@@ -239,10 +239,6 @@ void Checker::check_objects()
         }
         check_transforms("objects", i, object.transform);
     }
-    if (!scene.objects.empty() && scene.render.estimator == EstimatorKind::Restir) {
-        report({"render", "estimator"},
-               "estimator \"restir\" cannot render [[objects]] yet; use \"path\"");
-    }
 }
 
 }  // namespace

@@ -111,6 +111,7 @@ void describe(FieldVisitor& visitor, PathTracerParams& path);
 void describe(FieldVisitor& visitor, RestirParams& restir);
 void describe(FieldVisitor& visitor, TemporalParams& temporal);
 void describe(FieldVisitor& visitor, SpatialParams& spatial);
+void describe(FieldVisitor& visitor, SurfaceRestirParams& surface);
 void describe(FieldVisitor& visitor, OutputDescription& output);
 void describe(FieldVisitor& visitor, VolumeDescription& volume);
 void describe(FieldVisitor& visitor, SequenceParams& sequence);

@@ -83,6 +83,45 @@ void describe(FieldVisitor& v, RestirParams& restir)
         restir.visibility, visibility_names);
     visit_table(v, {.key = "temporal", .doc = "Reuse of the pass before"}, restir.temporal);
     visit_table(v, {.key = "spatial", .doc = "Reuse of neighbours"}, restir.spatial);
+    visit_table(v, {.key = "surface", .doc = "Direct light of the first surface"}, restir.surface);
+}
+
+void describe(FieldVisitor& v, SurfaceRestirParams& surface)
+{
+    visit(
+        v,
+        {.key = "light_candidates",
+         .doc = "Lamps tried per pixel and pass; fewer where the scene has few; one shadow ray for "
+                "the chosen one",
+         .range = between(1, 256)},
+        surface.light_candidates);
+    visit(v,
+          {.key = "bsdf_candidates",
+           .doc = "Directions from the material tried besides",
+           .range = between(1, 64)},
+          surface.bsdf_candidates);
+    visit(v,
+          {.key = "cap",
+           .doc = "Most confidence that history may have",
+           .unit = "passes",
+           .range = between(0, 10'000)},
+          surface.cap);
+    visit(v,
+          {.key = "neighbours",
+           .doc = "Reservoirs taken from around; two shadow rays each",
+           .range = between(0, 32)},
+          surface.neighbours);
+    visit(v,
+          {.key = "radius",
+           .doc = "Of the disk they are taken from",
+           .unit = "pixels",
+           .range = between(0.5, 256)},
+          surface.radius_px);
+    visit(v,
+          {.key = "boost",
+           .doc = "Pixels without history take this many times as many neighbours",
+           .range = between(1, 8)},
+          surface.boost);
 }
 
 void describe(FieldVisitor& v, TemporalParams& temporal)

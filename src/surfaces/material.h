@@ -20,6 +20,7 @@ struct Material {
     Spectrum emission{0.0f};    ///< radiance that the surface gives off [W/(m^2 sr)]
     bool two_sided = true;      ///< else the back is black; dielectrics have both sides anyway
 
+    bool operator==(const Material&) const = default;
     [[nodiscard]] bool is_emissive() const { return max_component(emission) > 0.0f; }
 };
 

@@ -46,6 +46,13 @@ struct SurfaceHit {
 /// Whether any triangle lies within the range.
 [[nodiscard]] bool is_occluded(const Surfaces& surfaces, const Ray& ray, Interval range);
 
+/// Whether a surface lies between the ray's origin and the point `distance` along it (infinity: all
+/// the way), where a light is that may lie on a surface itself: distances are rounded.
+[[nodiscard]] inline bool is_shadowed(const Surfaces& surfaces, const Ray& ray, float distance)
+{
+    return is_occluded(surfaces, ray, {0.0f, distance * (1.0f - 0x1p-21f)});
+}
+
 /// All about a hit at ray time `time`. The point comes from the triangle's corners rather than from
 /// the ray, in double, so that it is as close to the surface as floats can be.
 [[nodiscard]] SurfaceVertex make_vertex(const Surfaces& surfaces, const SurfaceHit& hit,

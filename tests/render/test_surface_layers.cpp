@@ -31,12 +31,14 @@ Scene make_scene()
     return scene;
 }
 
-LayeredImage render(const Scene& scene, std::vector<std::string> aovs, int samples = 16)
+LayeredImage render(const Scene& scene, std::vector<std::string> aovs, EstimatorKind estimator,
+                    int samples = 16)
 {
     RenderDescription description;
     description.width = scene.camera.width;
     description.height = scene.camera.height;
     description.samples = samples;
+    description.estimator = estimator;
     description.path.max_bounces = 3;
     OutputDescription output;
     output.aovs = std::move(aovs);
@@ -54,11 +56,14 @@ const Buffer2D<float>& channel(const LayeredImage& image, const std::string& nam
     throw std::runtime_error(name);
 }
 
-TEST(SurfaceLayers, PartsSumToTheImage)
+class SurfaceLayers : public testing::TestWithParam<EstimatorKind> {};
+
+TEST_P(SurfaceLayers, PartsSumToTheImage)
 {
-    const LayeredImage image =
-        render(make_scene(), {"direct", "indirect", "emission", "volume_direct", "volume_indirect",
-                              "volume_emission", "background"});
+    const LayeredImage image = render(make_scene(),
+                                      {"direct", "indirect", "emission", "volume_direct",
+                                       "volume_indirect", "volume_emission", "background"},
+                                      GetParam());
     double total[7] = {};
     for (int y = 0; y < image.height; ++y) {
         for (int x = 0; x < image.width; ++x) {
@@ -77,11 +82,11 @@ TEST(SurfaceLayers, PartsSumToTheImage)
     EXPECT_EQ(total[5], 0.0);
 }
 
-TEST(SurfaceLayers, NormalsPlacesAndDepths)
+TEST_P(SurfaceLayers, NormalsPlacesAndDepths)
 {
     const Scene scene = make_scene();
     const LayeredImage image =
-        render(scene, {"N", "P", "Z", "albedo", "volume_Z", "transmittance"});
+        render(scene, {"N", "P", "Z", "albedo", "volume_Z", "transmittance"}, GetParam());
     const Vec3 normal(0.0f, -std::sin(0.4f), std::cos(0.4f));
     int on_surface = 0;
     int beside = 0;
@@ -110,7 +115,7 @@ TEST(SurfaceLayers, NormalsPlacesAndDepths)
     EXPECT_GT(beside, 20);
 }
 
-TEST(SurfaceLayers, MotionOfSurfaces)
+TEST_P(SurfaceLayers, MotionOfSurfaces)
 {
     // The floor moves by 0.3 m to the right until the next frame, the camera stands.
     Scene scene = make_scene();
@@ -121,7 +126,7 @@ TEST(SurfaceLayers, MotionOfSurfaces)
     moved.keys[0].translate.x += 0.3;
     next.world_from_surface = {moved};
     scene.next = next;
-    const LayeredImage image = render(scene, {"motion", "P"});
+    const LayeredImage image = render(scene, {"motion", "P"}, GetParam());
     int seen = 0;
     for (int y = 0; y < image.height; ++y) {
         for (int x = 0; x < image.width; ++x) {
@@ -139,9 +144,11 @@ TEST(SurfaceLayers, MotionOfSurfaces)
     EXPECT_GT(seen, 20);
 }
 
-TEST(SurfaceLayers, ImagesDoNotDependOnThreads)
+TEST_P(SurfaceLayers, ImagesDoNotDependOnThreads)
 {
-    const auto render_all = [] { return render(make_scene(), {"N", "direct", "indirect"}, 8); };
+    const auto render_all = [] {
+        return render(make_scene(), {"N", "direct", "indirect"}, GetParam(), 8);
+    };
     LayeredImage one;
     LayeredImage four;
     run_with_threads(1, [&] { one = render_all(); });
@@ -156,14 +163,11 @@ TEST(SurfaceLayers, ImagesDoNotDependOnThreads)
     }
 }
 
-TEST(SurfaceLayers, TheReSTIREstimatorRefusesSurfaces)
-{
-    RenderDescription description;
-    description.estimator = EstimatorKind::Restir;
-    FrameHistory history;
-    FrameStats stats;
-    EXPECT_THROW((void)render_frame(make_scene(), description, {}, history, nullptr, stats), Error);
-}
+INSTANTIATE_TEST_SUITE_P(Estimators, SurfaceLayers,
+                         testing::Values(EstimatorKind::Path, EstimatorKind::Restir),
+                         [](const testing::TestParamInfo<EstimatorKind>& each) {
+                             return each.param == EstimatorKind::Path ? "path" : "restir";
+                         });
 
 }  // namespace
 }  // namespace mote

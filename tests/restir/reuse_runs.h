@@ -22,13 +22,13 @@ namespace mote::test {
     return value && std::string(value) == "1";
 }
 
-/// Light of one scattering event alone: what reservoirs are about. Tiles of 4 x 3 pixels, 3 x 3 in
-/// images of 9 rows.
+/// Light of one scattering event alone, in media and on surfaces: what reservoirs are about. Tiles
+/// of 4 x 3 pixels, 3 x 3 in images of 9 rows.
 inline constexpr int tile_edge = 4;
 inline OutputDescription direct_light_output()
 {
     OutputDescription output;
-    output.aovs = {"volume_direct"};
+    output.aovs = {"volume_direct", "direct"};
     output.color_type = PixelType::Float;
     return output;
 }
@@ -37,7 +37,11 @@ inline LayeredImage direct_light_only(LayeredImage image)
 {
     std::vector<Channel> kept;
     for (Channel& channel : image.channels) {
-        if (channel.name.rfind("volume_direct", 0) == 0) kept.push_back(std::move(channel));
+        const bool is_black = std::all_of(channel.data.begin(), channel.data.end(),
+                                          [](float value) { return value == 0.0f; });
+        const bool is_direct =
+            channel.name.rfind("volume_direct", 0) == 0 || channel.name.rfind("direct", 0) == 0;
+        if (is_direct && !is_black) kept.push_back(std::move(channel));
     }
     image.channels = std::move(kept);
     return image;

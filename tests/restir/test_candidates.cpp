@@ -2,10 +2,12 @@
 
 #include <cstdlib>
 #include <map>
+#include <set>
 
 #include "restir/candidates.h"
+#include "restir/direction_hits.h"
 #include "restir/domains.h"
-#include "restir/phase_candidates.h"
+#include "restir/mixed_phase.h"
 #include "support/chi_squared.h"
 #include "support/trials.h"
 
@@ -19,6 +21,7 @@ TestScene all_lights()
 {
     TestScene test = test::everything_at_once();
     test.scene.lights.push_back(PointLight{{1.2f, 0.9f, 0.8f}, {0.5f, 1.0f, 0.5f}});
+    test.scene.lights.push_back(SphereLight{{-0.7f, 0.9f, 0.8f}, 0.3f, {2.0f, 1.0f, 0.5f}});
     return test;
 }
 
@@ -127,7 +130,7 @@ TEST(Candidates, EvaluatingTheirNumbersGivesTheSameAgain)
             weigh_bins(frame, domain);
             candidates.clear();
             draw_candidates(frame, domain, 8, rng, candidates);
-            EXPECT_LE(candidates.size(), 8u * (1u + frame.phase_lights.size()));
+            EXPECT_LE(candidates.size(), 8u * (1u + frame.lights.size()));
             for (const Candidate& c : candidates) {
                 ++seen[frame.lights[static_cast<size_t>(c.y.light)].kind];
                 EXPECT_GT(c.density, 0.0f);
@@ -174,23 +177,37 @@ TEST(Candidates, NonsenseBringsNothing)
     EXPECT_EQ(evaluate(frame, empty, {0.5f, 0, Vec3(0.5f)}).f, Spectrum(0.0f));
 }
 
-TEST(CandidatesStat, PhaseDirectionsHaveTheirDensity)
+TEST(CandidatesStat, DirectionsHaveTheirDensity)
 {
-    // The mean of 1 / phase_density over hits is the size of what can be met: 4 pi for the
-    // environment, 1 for a quad's two numbers, the glowing volume within reach. 5 standard errors.
+    // The mean of 1 / density over hits is the size of what can be met: 4 pi for the environment,
+    // 1 for the two numbers of a quad or a sphere, the glowing volume within reach. 5 standard
+    // errors.
     const TestScene test = all_lights();
     const FrameDomain frame = test::candidates_domain(test.scene);
     const Vec3 x(0.1f, 0.0f, 0.1f);
     const Vec3 wo = glm::normalize(Vec3(0.5f, 0.4f, 3.2f));
-    ASSERT_FALSE(frame.phase_lights.empty());
-    for (const int light : frame.phase_lights) {
+    const MixedPhase phase = mixed_phase_at(frame.scene->media, x, 0.5f);
+    std::set<int> lights;
+    for (size_t i = 0; i < frame.lights.size(); ++i) {
+        const SampledLightKind kind = frame.lights[i].kind;
+        const bool is_found = kind != SampledLightKind::Distant &&
+                              (kind != SampledLightKind::Lamp ||
+                               !std::holds_alternative<PointLight>(test.scene.lights[i]));
+        if (is_found) lights.insert(static_cast<int>(i));
+    }
+    ASSERT_FALSE(lights.empty());
+    for (const int light : lights) {
         const RunningStats stats = test::run_trials(60'000, 25, [&](Rng& rng) {
             double sum = 0.0;
-            for_each_phase_hit(frame, x, 0.5f, wo, rng, [&](const PhaseHit& hit) {
-                if (hit.light == light && max_component(hit.arrival.L) > 0.0f) {
-                    sum += 1.0 / static_cast<double>(hit.phase_density);
-                }
-            });
+            const float choice = rng.uniform();
+            const Vec3 wi = phase.sample(wo, choice, rng.uniform2());
+            const float pdf_dir = phase.pdf(wo, wi);
+            for_each_light_along(
+                frame, frame.bsdf_finds, {x, wi, 0.5f}, rng.uniform(),
+                [&](const DirectionHit& hit) {
+                    if (hit.light != light || !(max_component(hit.arrival.L) > 0.0f)) return;
+                    sum += 1.0 / static_cast<double>(pdf_dir * hit.per_direction);
+                });
             return sum;
         });
         double exact = 1.0;

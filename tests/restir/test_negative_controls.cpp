@@ -4,7 +4,8 @@
 
 #include "reference/path_tracer.h"
 #include "restir/candidates.h"
-#include "restir/phase_candidates.h"
+#include "restir/direction_hits.h"
+#include "restir/mixed_phase.h"
 #include "restir/runs.h"
 #include "support/trials.h"
 #include "volumes/media_at.h"
@@ -140,8 +141,11 @@ Spectrum without_albedo(const FrameDomain& frame, const PixelDomain& domain, con
 Spectrum without_mis(const FrameDomain& frame, const PixelDomain& domain, const Candidate& c,
                      float T, float /*T_before*/)
 {
+    const float time = domain.ray.time;
+    const float pdf_dir =
+        mixed_phase_at(frame.scene->media, c.x, time).pdf(domain.wo(), c.arrival.wi);
     const float phase_density =
-        4.0f * phase_candidate_density(frame, c.x, domain.ray.time, domain.wo(), c.y, c.arrival);
+        4.0f * pdf_dir * density_per_direction(frame, frame.phase_finds, c.x, time, c.y, c.arrival);
     return T * c.f / std::max(c.density - phase_density, 1e-3f * c.density);
 }
 

@@ -3,6 +3,7 @@
 #include <cctype>
 #include <cstdlib>
 
+#include "restir/room_scenes.h"
 #include "restir/runs.h"
 
 namespace mote {
@@ -87,6 +88,8 @@ std::string test_name(const testing::TestParamInfo<TestScene>& scene)
     return name;
 }
 
+INSTANTIATE_TEST_SUITE_P(Rooms, UnbiasedStat, testing::ValuesIn(test::room_scenes()), test_name);
+INSTANTIATE_TEST_SUITE_P(Rooms, UnbiasedLong, testing::ValuesIn(test::room_scenes()), test_name);
 INSTANTIATE_TEST_SUITE_P(Scenes, UnbiasedStat, testing::ValuesIn(test::all_scenes()), test_name);
 INSTANTIATE_TEST_SUITE_P(Scenes, UnbiasedLong, testing::ValuesIn(test::all_scenes()), test_name);
 

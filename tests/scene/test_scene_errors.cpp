@@ -124,9 +124,6 @@ TEST(SceneErrors, NamePlaceKeyAndRemedy)
         {"[[materials]]\ncolor = 2",
          "scene.toml:1:1: error: a material needs a \"name\" to be used by\n"
          "scene.toml:2:9: error: \"color\" in [materials] is 2, allowed: 0 to 1"},
-        {"[render]\nestimator = \"restir\"\n[[objects]]\nfile = \"a.obj\"",
-         "scene.toml:2:13: error: estimator \"restir\" cannot render [[objects]] yet; use "
-         "\"path\""},
         {"first_frame = 5\nlast_frame = 4",
          "scene.toml:2:14: error: \"last_frame\" is 4, before \"first_frame\" 5"},
         {"[render]\nwidth = 65536\nheight = 65536",

@@ -1,4 +1,4 @@
-#include "reference/light_tree.h"
+#include "scene/light_tree.h"
 
 #include "core/distribution.h"
 #include "core/error.h"

@@ -1,0 +1,135 @@
+#include <algorithm>
+#include <cmath>
+
+#include "restir/direction_hits.h"
+#include "restir/surface_domain.h"
+#include "scene/environment.h"
+#include "surfaces/bsdf.h"
+
+namespace mote {
+namespace {
+
+/// Candidates per lamp where there are few of them, and per light for an environment image.
+constexpr int candidates_per_lamp = 4;
+constexpr int environment_share = 4;
+
+/// How many candidates of each kind a surface draws.
+struct Counts {
+    int local = 0;
+    int environment = 0;
+    int bsdf = 0;
+};
+
+Counts counts_for(const FrameDomain& frame)
+{
+    const SurfaceRestirParams& params = frame.params.surface;
+    Counts n;
+    const auto lamps =
+        static_cast<int>(std::min<size_t>(frame.caches->local_lights.size(), size_t{1} << 20));
+    if (frame.samples_local)
+        n.local = std::min(params.light_candidates, candidates_per_lamp * lamps);
+    const auto& environment = frame.scene->environment;
+    // A constant one is found by the BSDF's directions.
+    if (environment && environment->map) {
+        n.environment = std::max(1, params.light_candidates / environment_share);
+    }
+    if (frame.bsdf_finds.any()) n.bsdf = params.bsdf_candidates;
+    return n;
+}
+
+/// Draws a surface's candidates, one kind after the other.
+struct Drawing {
+    const FrameDomain& frame;
+    const SurfaceDomain& domain;
+    Counts n;
+    Rng& rng;
+    std::vector<Candidate>& out;
+
+    /// Expected number of candidates at a sample per unit of its measure, of both kinds.
+    [[nodiscard]] float density(const PathSample& y, const Arrival& arrival, float by_light) const
+    {
+        if (n.bsdf == 0) return by_light;
+        const float per_direction =
+            density_per_direction(frame, frame.bsdf_finds, domain.v.p, domain.time, y, arrival);
+        if (!(per_direction > 0.0f)) return by_light;
+        const float pdf_dir = bsdf_pdf(domain.v, domain.wo, arrival.wi);
+        return by_light + static_cast<float>(n.bsdf) * pdf_dir * per_direction;
+    }
+
+    void add(const PathSample& y, float by_light) const
+    {
+        const std::optional<Arrival> arrival = light_at(frame, y, domain.v.p, domain.time);
+        if (!arrival) return;
+        Candidate c = evaluate(frame, domain, y);
+        if (!(max_component(c.f) > 0.0f)) return;
+        c.density = density(y, *arrival, by_light);
+        c.known = cached_visibility(frame, y, c.x, c.arrival);
+        if (c.density > 0.0f && std::isfinite(c.density)) out.push_back(c);
+    }
+
+    /// By one of the lights' own sampling, which is tried `count` times and chooses it with `pmf`.
+    void add_point(int light, int count, float pmf) const
+    {
+        const auto point =
+            sample_light_point(frame, frame.lights[static_cast<size_t>(light)], domain.time, rng);
+        if (!point || !(point->density > 0.0f)) return;
+        add({0.0f, light, point->v}, static_cast<float>(count) * pmf * point->density);
+    }
+
+    void local() const
+    {
+        const double u_light = n.local > 0 ? uniform_double(rng) : 0.0;
+        for (int i = 0; i < n.local; ++i) {
+            double u = u_light + 0.6180339887498949 * i;  // golden-ratio steps, as in the volume
+            u -= std::floor(u);
+            const LightPick pick = frame.caches->cells->sample(domain.v.p, u);
+            if (pick.light >= 0 && pick.pmf > 0.0f) add_point(pick.light, n.local, pick.pmf);
+        }
+    }
+
+    void infinite() const
+    {
+        for (size_t i = 0; i < frame.lights.size(); ++i) {
+            const auto light = static_cast<int>(i);
+            if (frame.lights[i].kind == SampledLightKind::Distant) add_point(light, 1, 1.0f);
+            if (frame.lights[i].kind != SampledLightKind::Environment) continue;
+            for (int k = 0; k < n.environment; ++k) add_point(light, n.environment, 1.0f);
+        }
+    }
+
+    [[nodiscard]] float own_density(const DirectionHit& hit) const
+    {
+        if (frame.lights[static_cast<size_t>(hit.light)].kind == SampledLightKind::Environment) {
+            return static_cast<float>(n.environment) * hit.light_density;
+        }
+        if (n.local == 0) return 0.0f;
+        const float pmf = frame.caches->cells->pmf(hit.light, domain.v.p);
+        return static_cast<float>(n.local) * pmf * hit.light_density;
+    }
+
+    void directions() const
+    {
+        for (int i = 0; i < n.bsdf; ++i) {
+            const auto sample = sample_bsdf(domain.v, domain.wo, rng.uniform3());
+            const float u = rng.uniform();
+            if (!sample) continue;
+            const Ray ray{ray_origin(domain.v, sample->wi), sample->wi, domain.time};
+            for_each_light_along(frame, frame.bsdf_finds, ray, u, [&](const DirectionHit& hit) {
+                add({0.0f, hit.light, hit.v}, own_density(hit));
+            });
+        }
+    }
+};
+
+}  // namespace
+
+void draw_surface_candidates(const FrameDomain& frame, const SurfaceDomain& domain, Rng& rng,
+                             std::vector<Candidate>& out)
+{
+    const Drawing draw{frame, domain, counts_for(frame), rng, out};
+    draw.local();
+    draw.infinite();
+    draw.directions();
+}
+
+}  // namespace mote
