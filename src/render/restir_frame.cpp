@@ -104,8 +104,9 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
     PassCounts counts;
     bool finished = false;
     if (plan.reuses_samples()) {
+        history.pixels = {};
         finished = render_reusing_passes(inputs, plan, control, history.before, film, counts,
-                                         stats.dropped_non_finite);
+                                         stats.dropped_non_finite, history.pixels);
     } else {
         history.before = {};
         const Camera& camera = scene.camera;

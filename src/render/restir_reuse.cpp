@@ -10,6 +10,9 @@
 namespace mote {
 namespace {
 
+/// From this many lamps on `auto` reuses surfaces' samples in motion.
+constexpr size_t many_lamps = 16;
+
 /// Whole-image buffers of a pass under way.
 struct PassBuffers {
     PassBuffers(int width, int height, bool has_surfaces)
@@ -172,6 +175,12 @@ void ReusingFrame::pass_over_surfaces(const ReusePlan& plan, uint32_t pass,
         });
         std::swap(surfaces.current, surfaces.next);
     }
+    const auto keep = [&] {
+        for (size_t i = 0; i < now.surface_reservoirs.size(); ++i) {
+            now.surface_reservoirs.data()[i] = surfaces.current.data()[i].r;
+        }
+    };
+    if (!frame.params.surface.feedback) keep();
     if (plan.surface_spatial) {
         for_tiles([&](const Tile& tile, PassCounts& n) {
             Combination scratch(spatial_rules(frame.params));
@@ -181,8 +190,8 @@ void ReusingFrame::pass_over_surfaces(const ReusePlan& plan, uint32_t pass,
         });
         std::swap(surfaces.current, surfaces.next);
     }
-    for (size_t i = 0; i < now.surface_reservoirs.size(); ++i) {
-        now.surface_reservoirs.data()[i] = surfaces.current.data()[i].r;
+    if (frame.params.surface.feedback) keep();
+    for (size_t i = 0; i < now.surfaces.size(); ++i) {
         buffers.samples.data()[i].surface_direct =
             now.surfaces.data()[i].share * surfaces.colors.data()[i];
     }
@@ -197,6 +206,9 @@ ReusePlan plan_reuse(const FrameDomain& domain, const RenderDescription& render,
         ReusePlan plan;
         plan.keeps_passes = render.samples == 1;
         plan.accumulates = plan.keeps_passes && change && !change->any();
+        plan.surface_temporal = plan.keeps_passes && !plan.accumulates &&
+                                render.path.max_bounces > 0 && domain.scene->surfaces &&
+                                domain.caches->local_lights.size() >= many_lamps;
         return plan;
     }
     if (render.path.max_bounces == 0) return {};
@@ -213,7 +225,7 @@ ReusePlan plan_reuse(const FrameDomain& domain, const RenderDescription& render,
 
 bool render_reusing_passes(const PassInputs& inputs, const ReusePlan& plan,
                            const FrameControl& control, FinishedPass& before, Film& film,
-                           PassCounts& counts, int64_t& dropped)
+                           PassCounts& counts, int64_t& dropped, Buffer2D<PixelFilm>& kept)
 {
     const FrameDomain& frame = inputs.domain;
     const int width = frame.scene->camera.width;
@@ -236,9 +248,10 @@ bool render_reusing_passes(const PassInputs& inputs, const ReusePlan& plan,
             now.surfaces = Buffer2D<SurfaceDomain>(width, height);
             now.surface_reservoirs = Buffer2D<Reservoir>(width, height);
         }
-        const DomainStore* kept = keeps_rays ? &before.domains : nullptr;
-        run.for_tiles(
-            [&](const Tile& tile, PassCounts& n) { run.fill_initial(tile, pass, kept, now, n); });
+        const DomainStore* old_rays = keeps_rays ? &before.domains : nullptr;
+        run.for_tiles([&](const Tile& tile, PassCounts& n) {
+            run.fill_initial(tile, pass, old_rays, now, n);
+        });
         if (frame.scene->surfaces) run.pass_over_surfaces(plan, pass, before, now);
         const ReuseOutput out{buffers.next, buffers.colors, buffers.acceptance};
         if (plan.temporal && !before.empty()) {
@@ -285,6 +298,7 @@ bool render_reusing_passes(const PassInputs& inputs, const ReusePlan& plan,
     for (int y = 0; y < height; ++y) {
         for (int x = 0; x < width; ++x) film.store(x, y, pixels.at(x, y));
     }
+    if (plan.keeps_passes) kept = std::move(pixels);
     return true;
 }
 

@@ -21,15 +21,18 @@ struct ReusePlan {
 /// What the frame reuses. `auto`: where frames of one pass each show a scene that does not change,
 /// each frame is the mean of all passes so far: unbiased, as all estimate the same image, and at no
 /// cost. Reservoirs are left alone: measured, passes that are accumulated gain nothing from reuse
-/// (they would only be correlated), and in motion more candidates are worth more than history.
+/// (they would only be correlated), and in motion more candidates are worth more than history. But
+/// for surfaces among many lamps history is worth more in motion: their samples stay where they
+/// are.
 [[nodiscard]] ReusePlan plan_reuse(const FrameDomain& domain, const RenderDescription& render,
                                    const std::optional<Change>& change);
 
 /// All passes of a frame with reuse: each in whole-image steps that read frozen buffers. `before`
 /// is the last pass of the frame before (empty at the start and after cuts) and becomes the last
-/// pass of this one. False if stopped.
+/// pass of this one. `kept` becomes the frame's passes if the plan says so. False if stopped.
 [[nodiscard]] bool render_reusing_passes(const PassInputs& inputs, const ReusePlan& plan,
                                          const FrameControl& control, FinishedPass& before,
-                                         Film& film, PassCounts& counts, int64_t& dropped);
+                                         Film& film, PassCounts& counts, int64_t& dropped,
+                                         Buffer2D<PixelFilm>& kept);
 
 }  // namespace mote

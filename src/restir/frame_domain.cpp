@@ -56,7 +56,7 @@ FrameDomain make_frame_domain(std::shared_ptr<const Scene> scene,
     const auto add = [&](SampledLightKind kind, int index, bool infinite) {
         const auto light = static_cast<int>(frame.lights.size());
         frame.lights.push_back({kind, index});
-        if (infinite && !params.control_variate) frame.infinite.push_back(light);
+        if (infinite) frame.at_infinity.push_back(light);
     };
     for (size_t i = 0; i < scene->lights.size(); ++i) {
         const bool distant = std::holds_alternative<DistantLight>(scene->lights[i]);
@@ -77,6 +77,7 @@ FrameDomain make_frame_domain(std::shared_ptr<const Scene> scene,
         }
     }
     if (scene->environment) add(SampledLightKind::Environment, 0, true);
+    if (!params.control_variate) frame.infinite = frame.at_infinity;
     frame.samples_local = caches->cells && !caches->cells->is_empty();
     frame.scene = std::move(scene);
     frame.caches = std::move(caches);

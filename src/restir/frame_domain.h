@@ -42,8 +42,9 @@ struct FrameDomain {
     RestirParams params;
     /// Scene::lights in their order, then the emissive volumes, then the environment, if any.
     std::vector<SampledLight> lights;
-    bool samples_local = false;  ///< lamps and emissive volumes take part in the candidates
-    std::vector<int> infinite;   ///< of `lights`: those at infinity that do so too
+    bool samples_local = false;    ///< lamps and emissive volumes take part in the candidates
+    std::vector<int> at_infinity;  ///< of `lights`
+    std::vector<int> infinite;     ///< those of them that do so too
     std::shared_ptr<const LampSurfaces> lamp_surfaces;
     DirectionTargets phase_finds;     ///< what directions from phase functions look for
     DirectionTargets bsdf_finds;      ///< and those from surfaces

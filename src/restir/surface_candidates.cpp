@@ -45,24 +45,22 @@ struct Drawing {
     Rng& rng;
     std::vector<Candidate>& out;
 
-    /// Expected number of candidates at a sample per unit of its measure, of both kinds.
-    [[nodiscard]] float density(const PathSample& y, const Arrival& arrival, float by_light) const
-    {
-        if (n.bsdf == 0) return by_light;
-        const float per_direction =
-            density_per_direction(frame, frame.bsdf_finds, domain.v.p, domain.time, y, arrival);
-        if (!(per_direction > 0.0f)) return by_light;
-        const float pdf_dir = bsdf_pdf(domain.v, domain.wo, arrival.wi);
-        return by_light + static_cast<float>(n.bsdf) * pdf_dir * per_direction;
-    }
-
+    /// `by_light`: expected number of candidates there by the lights' own sampling, per unit of the
+    /// sample's measure.
     void add(const PathSample& y, float by_light) const
     {
         const std::optional<Arrival> arrival = light_at(frame, y, domain.v.p, domain.time);
         if (!arrival) return;
-        Candidate c = evaluate(frame, domain, y);
+        Candidate c;
+        c.y = y;
+        const float pdf_dir = light_surface(domain, *arrival, c);
         if (!(max_component(c.f) > 0.0f)) return;
-        c.density = density(y, *arrival, by_light);
+        c.density = by_light;
+        if (n.bsdf > 0 && pdf_dir > 0.0f) {
+            c.density += static_cast<float>(n.bsdf) * pdf_dir *
+                         density_per_direction(frame, frame.bsdf_finds, domain.v.p, domain.time, y,
+                                               *arrival);
+        }
         c.known = cached_visibility(frame, y, c.x, c.arrival);
         if (c.density > 0.0f && std::isfinite(c.density)) out.push_back(c);
     }
@@ -89,11 +87,11 @@ struct Drawing {
 
     void infinite() const
     {
-        for (size_t i = 0; i < frame.lights.size(); ++i) {
-            const auto light = static_cast<int>(i);
-            if (frame.lights[i].kind == SampledLightKind::Distant) add_point(light, 1, 1.0f);
-            if (frame.lights[i].kind != SampledLightKind::Environment) continue;
-            for (int k = 0; k < n.environment; ++k) add_point(light, n.environment, 1.0f);
+        for (const int light : frame.at_infinity) {
+            const SampledLight& sampled = frame.lights[static_cast<size_t>(light)];
+            const bool is_distant = sampled.kind == SampledLightKind::Distant;
+            const int count = is_distant ? 1 : n.environment;
+            for (int k = 0; k < count; ++k) add_point(light, count, 1.0f);
         }
     }
 

@@ -26,27 +26,32 @@ SurfaceDomain make_surface_domain(const FrameDomain& frame, const PixelDomain& d
     return out;
 }
 
+float light_surface(const SurfaceDomain& domain, const Arrival& arrival, Candidate& c)
+{
+    const BsdfValue bsdf = eval_bsdf_and_pdf(domain.v, domain.wo, arrival.wi);
+    const Spectrum f = bsdf.cosine * bsdf.f * arrival.L;
+    if (!is_finite(f) || !(max_component(f) > 0.0f)) return bsdf.pdf_dir;
+    c.x = ray_origin(domain.v, arrival.wi);
+    c.arrival = arrival;
+    if (arrival.distance < infinity) {
+        // From where the ray really starts to where it is to end.
+        const Vec3 to_light = domain.v.p + arrival.distance * arrival.wi - c.x;
+        const float distance = glm::length(to_light);
+        if (!(distance > 0.0f)) return bsdf.pdf_dir;
+        c.arrival.wi = to_light / distance;
+        c.arrival.distance = distance;
+    }
+    c.f = f;
+    return bsdf.pdf_dir;
+}
+
 Candidate evaluate(const FrameDomain& frame, const SurfaceDomain& domain, const PathSample& y)
 {
     Candidate c;
     c.y = y;
     c.x = domain.v.p;
     const std::optional<Arrival> arrival = light_at(frame, y, domain.v.p, domain.time);
-    if (!arrival) return c;
-    c.arrival = *arrival;
-    const BsdfValue bsdf = eval_bsdf_and_pdf(domain.v, domain.wo, arrival->wi);
-    const Spectrum f = bsdf.cosine * bsdf.f * arrival->L;
-    if (!is_finite(f) || !(max_component(f) > 0.0f)) return c;
-    c.x = ray_origin(domain.v, arrival->wi);
-    if (arrival->distance < infinity) {
-        // From where the ray really starts to where it is to end.
-        const Vec3 to_light = domain.v.p + arrival->distance * arrival->wi - c.x;
-        const float distance = glm::length(to_light);
-        if (!(distance > 0.0f)) return c;
-        c.arrival.wi = to_light / distance;
-        c.arrival.distance = distance;
-    }
-    c.f = f;
+    if (arrival) light_surface(domain, *arrival, c);
     return c;
 }
 

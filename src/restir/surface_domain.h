@@ -35,6 +35,11 @@ struct SurfaceEnd {
 [[nodiscard]] Candidate evaluate(const FrameDomain& frame, const SurfaceDomain& domain,
                                  const PathSample& y);
 
+/// The same of light that arrives at the surface's point, for those who know it already. Fills x,
+/// arrival and f of c (f is black where nothing is scattered); returns the density [1/sr] with
+/// which the BSDF's own sampling draws the direction.
+float light_surface(const SurfaceDomain& domain, const Arrival& arrival, Candidate& c);
+
 /// Draws params.surface.light_candidates lights (fewer where there are few lamps) with a point
 /// each, every distant light, and params.surface.bsdf_candidates directions from the BSDF, which
 /// meet what they meet; all weighted against each other by the balance heuristic. Candidates that

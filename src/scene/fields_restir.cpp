@@ -117,6 +117,8 @@ void describe(FieldVisitor& v, SurfaceRestirParams& surface)
            .unit = "pixels",
            .range = between(0.5, 256)},
           surface.radius_px);
+    visit(v, {.key = "feedback", .doc = "What neighbours brought becomes history, too"},
+          surface.feedback);
     visit(v,
           {.key = "boost",
            .doc = "Pixels without history take this many times as many neighbours",

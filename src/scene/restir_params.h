@@ -58,30 +58,15 @@ struct SpatialParams {
     bool feedback = false;   ///< the result becomes the next pass's history
 };
 
-/// What reuse between surfaces knows about shadows.
-enum class SurfaceVisibility {
-    Rays,      ///< exact in every target: two shadow rays per reservoir reused
-    Weighted,  ///< the chosen sample's shadow in all domains, weights from unshadowed targets
-    Reused,    ///< of the fresh sample in its own pixel alone: biased
-    None,      ///< of the final sample alone: biased
-};
-
-/// Weights between the reservoirs of surfaces.
-enum class SurfaceMis {
-    Pairwise,      ///< defensive pairwise
-    Balance,       ///< generalised balance heuristic: quadratic in the number of reservoirs
-    Contribution,  ///< one over the confidence of those that could have made the chosen sample
-    Constant,      ///< one over all confidence: biased, for study
-};
-
 /// Direct light of the first surface by reservoirs.
 struct SurfaceRestirParams {
-    int light_candidates = 32;  ///< lamps tried per pixel and pass, [1, 256]
-    int bsdf_candidates = 1;    ///< directions tried besides, [1, 64]
-    float cap = 20.0f;          ///< most confidence a history may have [passes]
-    int neighbours = 5;         ///< [0, 32]
-    float radius_px = 30.0f;
-    int boost = 3;  ///< neighbours of pixels without history are this many times as many, [1, 8]
+    int light_candidates = 8;  ///< lamps tried per pixel and pass, [1, 256]
+    int bsdf_candidates = 1;   ///< directions tried besides, [1, 64]
+    float cap = 20.0f;         ///< most confidence a history may have [passes]
+    int neighbours = 5;        ///< [0, 32]; two shadow rays each
+    float radius_px = 10.0f;   ///< of the disk they are taken from [px]
+    bool feedback = false;     ///< what neighbours brought becomes history, too
+    int boost = 2;  ///< neighbours of pixels without history are this many times as many, [1, 8]
 };
 
 /// How the volumetric ReSTIR estimator samples. Unbiased unless a field says otherwise.

@@ -19,8 +19,9 @@ struct Effort {
 };
 
 /// The parts of the image that are compared beside it: lamps that the camera sees are noise.
-inline const std::vector<std::string> part_names{"volume_direct", "volume_indirect",
-                                                 "volume_emission", "background"};
+inline const std::vector<std::string> part_names{
+    "direct",          "indirect",        "emission",  "volume_direct",
+    "volume_indirect", "volume_emission", "background"};
 
 inline RenderDescription description(const TestScene& test, EstimatorKind estimator, int samples)
 {
