@@ -21,11 +21,7 @@ struct Placing {
     int part = 0;
 
     [[nodiscard]] const GltfNode& at() const { return file.scene.nodes[static_cast<size_t>(node)]; }
-    [[nodiscard]] Mat4d world(double frame) const
-    {
-        return matrix(evaluate(shown.object->transform, frame)) *
-               world_from_node(file.scene, node, frame / context.description.fps);
-    }
+    [[nodiscard]] Mat4d world(double frame) const;
     [[nodiscard]] bool moves() const
     {
         return is_animated(file.scene, node) || shown.object->transform.size() > 1;
@@ -36,6 +32,19 @@ struct Placing {
     [[nodiscard]] std::optional<MovingTransform> motion(bool is_emissive, double open,
                                                         double close) const;
 };
+
+Mat4d Placing::world(double frame) const
+{
+    const Mat4d world = matrix(evaluate(shown.object->transform, frame)) *
+                        world_from_node(file.scene, node, frame / context.description.fps);
+    for (int c = 0; c < 4; ++c) {
+        const double largest = glm::length(Vec3d(world[c]));
+        if (largest < 1e9) continue;
+        throw Error(ExitCode::Input, fmt::format("{}: node \"{}\" is placed or scaled beyond 1e9 m",
+                                                 printable(file.path), printable(at().name)));
+    }
+    return world;
+}
 
 std::shared_ptr<const MeshBvh> Placing::mesh() const
 {

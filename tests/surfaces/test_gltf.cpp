@@ -318,6 +318,22 @@ TEST(Gltf, ErrorsNameTheFileAndTheReason)
          "leads out of the file's folder"},
         {[](auto& t) { t.json["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
          "needs the extension KHR_draco_mesh_compression"},
+        {[](auto& t) { t.json["accessors"][2]["count"] = 3; },
+         "accessor 2 (texture coordinates) has 3 elements, but vertex 3 is used"},
+        {[](auto& t) {
+             // A small file that means a large scene.
+             const Json primitive = t.json["meshes"][0]["primitives"][0];
+             for (int i = 0; i < 60'000; ++i)
+                 t.json["meshes"][0]["primitives"].push_back(primitive);
+         },
+         "use the same data too often"},
+        {[](auto& t) {
+             for (int i = 0; i < 2'000; ++i) {
+                 t.json["nodes"].push_back({{"children", {i + 2}}});
+             }
+             t.json["nodes"].push_back(Json::object());
+         },
+         "nested more than 1000 deep"},
         {[](auto& t) {
              Json deep = 1;
              for (int i = 0; i < 100; ++i) deep = Json::array({deep});

@@ -1,5 +1,6 @@
 #include "surfaces/gltf/gltf_accessor.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include <fmt/format.h>
@@ -119,15 +120,7 @@ void place(const GltfSource& source, const GltfBytes& bytes, size_t offset, cons
     elements.first = bytes.data + offset;
 }
 
-/// Bytes of all buffers: what an accessor without a buffer view may ask for in elements, too.
-size_t total_bytes(const tinygltf::Model& model)
-{
-    size_t bytes = 0;
-    for (const tinygltf::Buffer& buffer : model.buffers) bytes += buffer.data.size();
-    return bytes;
-}
-
-Elements find_elements(const GltfSource& source, int index, const std::string& what)
+Elements find_elements(const GltfSource& source, int index, int components, const std::string& what)
 {
     const tinygltf::Accessor& accessor = source.at(source.model.accessors, index, "accessor");
     Elements elements;
@@ -137,6 +130,10 @@ Elements find_elements(const GltfSource& source, int index, const std::string& w
     elements.is_normalized = accessor.normalized;
     if (component_size(elements.component_type) == 0 || elements.components == 0) {
         source.fail(fmt::format("{} is of no type that mote reads", what));
+    }
+    if (elements.components != components) {
+        source.fail(fmt::format("{} has {} components, {} are needed", what, elements.components,
+                                components));
     }
     if (elements.count == 0) source.fail(fmt::format("{} is empty", what));
     if (accessor.bufferView < 0) {
@@ -207,15 +204,23 @@ GltfBytes view_bytes(const GltfSource& source, int buffer_view)
     return {buffer.data.data() + view.byteOffset, view.byteLength, view.byteStride};
 }
 
+size_t total_bytes(const tinygltf::Model& model)
+{
+    size_t bytes = 0;
+    for (const tinygltf::Buffer& buffer : model.buffers) bytes += buffer.data.size();
+    return bytes;
+}
+
+size_t element_count(const GltfSource& source, int accessor)
+{
+    return source.at(source.model.accessors, accessor, "accessor").count;
+}
+
 std::vector<glm::vec4> read_vectors(const GltfSource& source, int accessor, int components,
                                     const char* what)
 {
     const std::string name = title(accessor, what);
-    const Elements elements = find_elements(source, accessor, name);
-    if (elements.components != components) {
-        source.fail(fmt::format("{} has {} components, {} are needed", name, elements.components,
-                                components));
-    }
+    const Elements elements = find_elements(source, accessor, components, name);
     std::vector<glm::vec4> out(elements.count, glm::vec4(0.0f));
     for (size_t i = 0; i < elements.count; ++i) {
         for (int c = 0; c < components; ++c) out[i][c] = static_cast<float>(elements.at(i, c));
@@ -225,14 +230,39 @@ std::vector<glm::vec4> read_vectors(const GltfSource& source, int accessor, int 
     return out;
 }
 
+std::vector<glm::vec4> read_some_vectors(const GltfSource& source, int accessor, int components,
+                                         const char* what, std::span<const uint32_t> wanted)
+{
+    const std::string name = title(accessor, what);
+    const Elements elements = find_elements(source, accessor, components, name);
+    if (!wanted.empty() && wanted.back() >= elements.count) {
+        source.fail(fmt::format("{} has {} elements, but vertex {} is used", name, elements.count,
+                                wanted.back()));
+    }
+    std::vector<glm::vec4> out(wanted.size(), glm::vec4(0.0f));
+    for (size_t i = 0; i < wanted.size(); ++i) {
+        for (int c = 0; c < components; ++c) {
+            out[i][c] = static_cast<float>(elements.at(wanted[i], c));
+        }
+    }
+    for_each_sparse(source, source.model.accessors[static_cast<size_t>(accessor)], elements, name,
+                    [&](size_t element, int c, double value) {
+                        const auto found = std::lower_bound(wanted.begin(), wanted.end(), element);
+                        if (found == wanted.end() || *found != element) return;
+                        const auto i = static_cast<size_t>(found - wanted.begin());
+                        out[i][c] = static_cast<float>(value);
+                    });
+    return out;
+}
+
 std::vector<uint32_t> read_indices(const GltfSource& source, int accessor)
 {
     const std::string name = title(accessor, "indices");
-    const Elements elements = find_elements(source, accessor, name);
+    const Elements elements = find_elements(source, accessor, 1, name);
     const bool is_unsigned = elements.component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
                              elements.component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
                              elements.component_type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
-    if (elements.components != 1 || !is_unsigned || elements.is_normalized) {
+    if (!is_unsigned || elements.is_normalized) {
         source.fail(fmt::format("{} are no unsigned integers", name));
     }
     std::vector<uint32_t> out(elements.count, 0);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,17 @@ struct GltfSource {
 /// Throws Error(Input) unless they are numbers of this many components that lie in their buffers.
 [[nodiscard]] std::vector<glm::vec4> read_vectors(const GltfSource& source, int accessor,
                                                   int components, const char* what);
+
+/// The same of some elements, named in ascending order: primitives may share a large accessor.
+[[nodiscard]] std::vector<glm::vec4> read_some_vectors(const GltfSource& source, int accessor,
+                                                       int components, const char* what,
+                                                       std::span<const uint32_t> elements);
+
+/// Number of elements of an accessor, whatever they are.
+[[nodiscard]] size_t element_count(const GltfSource& source, int accessor);
+
+/// Bytes of all buffers together.
+[[nodiscard]] size_t total_bytes(const tinygltf::Model& model);
 
 /// As read_vectors, for unsigned integers.
 [[nodiscard]] std::vector<uint32_t> read_indices(const GltfSource& source, int accessor);

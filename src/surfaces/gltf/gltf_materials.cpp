@@ -77,7 +77,7 @@ struct Converter {
         const tinygltf::Texture& texture = source.at(source.model.textures, info.index, "texture");
         GltfUvChoice own{info.texCoord, texture_transform(info.extensions)};
         const Value* other_set = member(info.extensions, "KHR_texture_transform", "texCoord");
-        own.set = static_cast<int>(number_of(other_set, info.texCoord));
+        own.set = static_cast<int>(within(number_of(other_set, info.texCoord), 0.0, 1000.0));
         if (!has_uv) uv = own;
         if (has_uv && (own.set != uv.set || own.from_file != uv.from_file)) {
             spdlog::warn(

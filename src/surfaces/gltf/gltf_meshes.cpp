@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
@@ -35,6 +37,39 @@ std::vector<Vec2> convert_uvs(const std::vector<glm::vec4>& from, const GltfUvCh
     return out;
 }
 
+/// The vertices that a primitive lists, in the order of its mode.
+std::vector<uint32_t> read_list(const GltfSource& source, const tinygltf::Primitive& primitive,
+                                size_t vertex_count)
+{
+    std::vector<uint32_t> list;
+    if (primitive.indices >= 0) {
+        list = read_indices(source, primitive.indices);
+    } else {
+        list.resize(vertex_count);
+        for (size_t i = 0; i < list.size(); ++i) list[i] = static_cast<uint32_t>(i);
+    }
+    for (const uint32_t vertex : list) {
+        if (vertex < vertex_count) continue;
+        source.fail(
+            fmt::format("a triangle uses vertex {}, but there are only {}", vertex, vertex_count));
+    }
+    return list;
+}
+
+/// Renumbers the vertices of a list by their rank, and returns them in ascending order: what a
+/// primitive uses of accessors that many may share.
+std::vector<uint32_t> compact(std::vector<uint32_t>& list)
+{
+    std::vector<uint32_t> used = list;
+    std::sort(used.begin(), used.end());
+    used.erase(std::unique(used.begin(), used.end()), used.end());
+    for (uint32_t& vertex : list) {
+        const auto rank = std::lower_bound(used.begin(), used.end(), vertex) - used.begin();
+        vertex = static_cast<uint32_t>(rank);
+    }
+    return used;
+}
+
 /// A primitive of triangles, unfinished.
 Mesh read_primitive(const GltfSource& source, const tinygltf::Primitive& primitive,
                     const GltfUvChoice& choice)
@@ -43,27 +78,34 @@ Mesh read_primitive(const GltfSource& source, const tinygltf::Primitive& primiti
         const auto found = primitive.attributes.find(name);
         return found == primitive.attributes.end() ? -1 : found->second;
     };
+    const int position = attribute("POSITION");
+    const size_t count = std::min(element_count(source, position), total_bytes(source.model));
+    std::vector<uint32_t> list = read_list(source, primitive, count);
+    const std::vector<uint32_t> used = compact(list);
     Mesh mesh;
-    for (const glm::vec4& p : read_vectors(source, attribute("POSITION"), 3, "positions")) {
+    for (const glm::vec4& p : read_some_vectors(source, position, 3, "positions", used)) {
         mesh.positions.emplace_back(p);
     }
     if (const int accessor = attribute("NORMAL"); accessor >= 0) {
-        for (const glm::vec4& n : read_vectors(source, accessor, 3, "normals")) {
+        for (const glm::vec4& n : read_some_vectors(source, accessor, 3, "normals", used)) {
             mesh.normals.emplace_back(n);
         }
     }
     if (const int accessor = attribute(fmt::format("TEXCOORD_{}", choice.set)); accessor >= 0) {
-        mesh.uvs = convert_uvs(read_vectors(source, accessor, 2, "texture coordinates"), choice);
+        mesh.uvs = convert_uvs(read_some_vectors(source, accessor, 2, "texture coordinates", used),
+                               choice);
     }
-    std::vector<uint32_t> vertices;
-    if (primitive.indices >= 0) {
-        vertices = read_indices(source, primitive.indices);
-    } else {
-        vertices.resize(mesh.positions.size());
-        for (size_t i = 0; i < vertices.size(); ++i) vertices[i] = static_cast<uint32_t>(i);
-    }
-    add_triangles(vertices, primitive.mode, mesh);
+    add_triangles(list, primitive.mode, mesh);
     return mesh;
+}
+
+/// Throws if the parts hold more than the file can mean: every corner is at least a byte of it, but
+/// for data that several primitives share.
+void check_size(const GltfSource& source, const GltfScene& scene)
+{
+    if (scene.corner_count / 256 > total_bytes(source.model) + 1000) {
+        source.fail("its meshes use the same data too often to be meant");
+    }
 }
 
 bool has_pictures(const GltfMaterial& material)
@@ -108,6 +150,8 @@ std::vector<int> convert_mesh(const GltfSource& source, int index,
             spdlog::warn("{} has no texture coordinates; shown without pictures", place);
         }
         parts.push_back(static_cast<int>(out.parts.size()));
+        out.corner_count += 3 * part.mesh.triangles.size();
+        check_size(source, out);
         out.parts.push_back(std::move(part));
     }
     if (left_out > 0) {

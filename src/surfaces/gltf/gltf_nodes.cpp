@@ -73,6 +73,9 @@ void convert_cameras(const GltfSource& source, GltfScene& out)
     }
 }
 
+constexpr int max_depth = 1000;
+constexpr size_t max_placed = 10'000'000;
+
 }  // namespace
 
 void convert_nodes(const GltfSource& source, const std::vector<GltfUvChoice>& uvs, GltfScene& out)
@@ -84,10 +87,12 @@ void convert_nodes(const GltfSource& source, const std::vector<GltfUvChoice>& uv
     struct Pending {
         int node;
         int parent;
+        int depth;
     };
+    size_t placed = 0;
     std::vector<Pending> pending;
     const std::vector<int> roots = roots_of(source);
-    for (size_t i = roots.size(); i-- > 0;) pending.push_back({roots[i], -1});
+    for (size_t i = roots.size(); i-- > 0;) pending.push_back({roots[i], -1, 0});
     bool has_skins = false;
     while (!pending.empty()) {
         const Pending next = pending.back();
@@ -98,6 +103,9 @@ void convert_nodes(const GltfSource& source, const std::vector<GltfUvChoice>& uv
             source.fail(fmt::format("node {} is its own ancestor or has two parents", next.node));
         }
         place = static_cast<int>(out.nodes.size());
+        if (next.depth > max_depth) {
+            source.fail(fmt::format("its nodes are nested more than {} deep", max_depth));
+        }
         GltfNode node;
         node.name = from.name;
         node.parent = next.parent;
@@ -109,6 +117,10 @@ void convert_nodes(const GltfSource& source, const std::vector<GltfUvChoice>& uv
                             .first;
             }
             node.parts = found->second;
+            placed += node.parts.size();
+            if (placed > max_placed) {
+                source.fail(fmt::format("it places more than {} meshes", max_placed));
+            }
         }
         if (from.camera >= 0) {
             (void)source.at(model.cameras, from.camera, "camera");
@@ -116,7 +128,7 @@ void convert_nodes(const GltfSource& source, const std::vector<GltfUvChoice>& uv
         }
         has_skins |= from.skin >= 0;
         for (size_t i = from.children.size(); i-- > 0;) {
-            pending.push_back({from.children[i], place});
+            pending.push_back({from.children[i], place, next.depth + 1});
         }
         out.nodes.push_back(std::move(node));
     }

@@ -65,6 +65,7 @@ struct GltfScene {
     std::vector<GltfImage> images;
     std::vector<GltfMaterial> materials;  ///< the last one is glTF's default material
     std::vector<GltfPart> parts;
+    size_t corner_count = 0;      ///< of all triangles of all parts
     std::vector<GltfNode> nodes;  ///< of the default scene
     std::vector<GltfCamera> cameras;
 };
