@@ -12,7 +12,7 @@ using Rgba = glm::vec4;
 
 /// A picture on a surface, repeated without end and interpolated bilinearly, in linear values. u
 /// runs to the right, v upwards: (0, 0) is the lower left corner of the picture. Cost of a look-up:
-/// about 20 ns.
+/// about 20 ns, 160 ns where it misses all caches.
 class Texture {
   public:
     /// 8-bit RGBA, rows from the top; RGB by the sRGB curve if is_srgb. Asserts the sizes.
