@@ -205,6 +205,27 @@ TEST(PrepareGltf, MatricesAreTakenApart)
     EXPECT_FALSE(decompose(matrix(trs)));
 }
 
+TEST(PrepareGltf, TheGardenThatIsShipped)
+{
+    const SceneDescription garden =
+        load_scene(std::string(MOTE_SOURCE_DIR) + "/scenes/garden.toml");
+    SceneCache cache;
+    PrepareStats stats;
+    const Scene scene = prepare_frame(garden, 12, {}, cache, stats);
+    ASSERT_TRUE(scene.surfaces);
+    EXPECT_EQ(scene.surfaces->objects.size(), 16u);  // floor, 3 lanterns with lids, 9 leaves
+    EXPECT_EQ(stats.meshes_built, 4);
+    EXPECT_TRUE(scene.surfaces->has_cuts);
+    ASSERT_EQ(scene.lights.size(), 1u + 3u * 448u);
+    EXPECT_TRUE(std::holds_alternative<SpotLight>(scene.lights[0]));
+    EXPECT_TRUE(std::get<TriangleLight>(scene.lights[1]).texture);
+    EXPECT_NEAR(scene.camera.tan_half_fov_y, std::tan(0.3f), 1e-6f);
+    // They swing: the middle one is elsewhere half a second later.
+    const Scene later = prepare_frame(garden, 24, {}, cache, stats);
+    EXPECT_NE(std::get<TriangleLight>(scene.lights[500]).corner,
+              std::get<TriangleLight>(later.lights[500]).corner);
+}
+
 TEST(PrepareGltf, MissingPicturesAreNamed)
 {
     test::GltfText text = yard();

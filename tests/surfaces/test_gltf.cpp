@@ -98,6 +98,7 @@ TEST(Gltf, Materials)
            {"KHR_materials_ior", {{"ior", 1.33}}}}},
          {"pbrMetallicRoughness", {{"roughnessFactor", 0}}}},
         {{"alphaMode", "BLEND"}}};
+    text.json["extras"] = {{"uri", "https://example.org/"}};
     const TemporaryFolder folder;
     const GltfScene scene = load_gltf(folder.write("a.gltf", text.gltf()));
     ASSERT_EQ(scene.materials.size(), 4u);
@@ -125,7 +126,7 @@ TEST(Gltf, Materials)
     EXPECT_EQ(scene.images[0].path, folder.file("skin a.png"));
     EXPECT_TRUE(scene.images[0].bytes.empty());
     EXPECT_EQ(scene.images[1].bytes, test::rgba_png);
-    // What the file depends on, as far as it is there.
+    // What the file depends on, as far as it is there; notes of other programs do not count.
     EXPECT_EQ(gltf_files(folder.file("a.gltf")).size(), 1u);
     folder.write("skin a.png", test::text_of(test::rgba_png));
     EXPECT_EQ(gltf_files(folder.file("a.gltf")).size(), 2u);

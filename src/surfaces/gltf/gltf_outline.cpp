@@ -24,8 +24,9 @@ using Json = nlohmann::json;
 /// tinygltf descends by recursion; nothing that is written deliberately is nested half as deep.
 constexpr int max_depth = 64;
 
-/// The events of a JSON text: collects the values of "uri" and "extensionsRequired".
+/// The events of a JSON text: collects the uris of buffers and images, and "extensionsRequired".
 struct Walker : Json::json_sax_t {
+    std::string section;  ///< key of the outermost object
     std::string key_at_hand;
     int depth = 0;
     int depth_of_needed = -1;
@@ -53,7 +54,8 @@ struct Walker : Json::json_sax_t {
     bool binary(binary_t&) override { return true; }
     bool string(string_t& value) override
     {
-        if (key_at_hand == "uri") uris.push_back(value);
+        const bool names_files = section == "buffers" || section == "images";
+        if (names_files && depth == 3 && key_at_hand == "uri") uris.push_back(value);
         if (depth_of_needed >= 0) needed.push_back(value);
         return true;
     }
@@ -68,6 +70,7 @@ struct Walker : Json::json_sax_t {
     bool key(string_t& value) override
     {
         key_at_hand = value;
+        if (depth == 1) section = value;
         return true;
     }
     bool parse_error(std::size_t position, const std::string&, const Json::exception&) override
