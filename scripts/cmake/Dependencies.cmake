@@ -13,6 +13,7 @@ find_package(fmt CONFIG REQUIRED)
 find_package(spdlog CONFIG REQUIRED)
 find_package(PNG REQUIRED)
 find_package(tinyobjloader CONFIG REQUIRED)
+find_package(TinyGLTF CONFIG REQUIRED)
 find_package(embree 3.13 CONFIG REQUIRED)
 
 # OpenVDB has no config file, and needs libboost-iostreams-dev, which Debian does not pull in.

@@ -48,5 +48,5 @@ function(mote_validate_headers)
   add_library(header_check OBJECT ${units})
   target_link_libraries(header_check PRIVATE mote_flags mote_render mote_image nanovdb oiio
     OpenVDB::openvdb OpenEXR::OpenEXR CLI11::CLI11 nlohmann_json::nlohmann_json
-    tomlplusplus::tomlplusplus fmt::fmt spdlog::spdlog)
+    tomlplusplus::tomlplusplus TinyGLTF::TinyGLTF fmt::fmt spdlog::spdlog)
 endfunction()

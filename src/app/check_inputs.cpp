@@ -15,6 +15,7 @@
 #include "particles/sequence.h"
 #include "particles/source_info.h"
 #include "render/aov.h"
+#include "scene/object_parts.h"
 #include "scene/prepare.h"
 #include "surfaces/load_mesh.h"
 #include "volumes/grid_info.h"
@@ -159,6 +160,28 @@ std::optional<std::vector<std::string>> attributes_of(const std::string& path,
     return names;
 }
 
+/// Reads a material's pictures.
+void check_pictures(Check& check, const MaterialFiles& files, const std::string& user)
+{
+    for (const std::string* file : picture_files(files)) {
+        if (file->empty() || check.is_over()) continue;
+        check.keep_message([&] {
+            const std::string& base_dir = check.scene.base_dir;
+            require_file(*file, base_dir, user);
+            (void)read_stored_image({(std::filesystem::path(base_dir) / *file).string(), {}});
+        });
+    }
+}
+
+/// Reads a glTF file and its pictures.
+void check_gltf(Check& check, const std::string& path)
+{
+    const GltfScene gltf = load_gltf(path);
+    for (const GltfImage& image : gltf.images) {
+        check.keep_message([&] { (void)read_stored_image({image.path, image.bytes}); });
+    }
+}
+
 }  // namespace
 
 InputReport check_inputs(const SceneDescription& scene, const std::vector<int>& frames,
@@ -190,8 +213,24 @@ InputReport check_inputs(const SceneDescription& scene, const std::vector<int>& 
             (void)read_image((std::filesystem::path(scene.base_dir) / light.image).string());
         });
     }
-    for (const ObjectDescription& object : scene.objects) {
-        check.open_files(object.file, [](const std::string& path, bool) { (void)load_mesh(path); });
+    if (!scene.camera.file.path.empty()) {
+        check.keep_message([&] {
+            const std::string& file = scene.camera.file.path;
+            require_file(file, scene.base_dir, "the camera");
+            const auto path = std::filesystem::path(scene.base_dir) / file;
+            (void)load_gltf(path.string());
+        });
+    }
+    for (size_t i = 0; i < scene.materials.size(); ++i) {
+        check_pictures(check, scene.materials[i].files,
+                       title("material", scene.materials[i].name, i));
+    }
+    for (size_t i = 0; i < scene.objects.size(); ++i) {
+        const ObjectDescription& object = scene.objects[i];
+        check_pictures(check, object.material.files, title("object", object.name, i));
+        check.open_files(object.file, [&](const std::string& path, bool) {
+            is_gltf(path) ? check_gltf(check, path) : (void)load_mesh(path);
+        });
     }
     return check.report;
 }

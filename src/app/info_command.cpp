@@ -4,6 +4,7 @@
 
 #include "app/commands.h"
 #include "app/info_image.h"
+#include "app/info_mesh.h"
 #include "app/info_particles.h"
 #include "app/info_scene.h"
 #include "app/info_volume.h"
@@ -60,12 +61,15 @@ void run_info(const InfoOptions& options)
         fmt::print("{}", describe_image(file));
     } else if (extension == ".vdb") {
         fmt::print("{}", describe_vdb(file, options.fps));
+    } else if (extension == ".obj" || extension == ".gltf" || extension == ".glb" ||
+               (extension == ".ply" && is_ply_mesh(file))) {
+        fmt::print("{}", describe_mesh_file(file));
     } else if (extension == ".ply" || extension == ".csv" || extension == ".npy") {
         fmt::print("{}: particle file\n{}", printable(file), describe_points(file, options.fps));
     } else {
         throw Error(ExitCode::Input,
                     fmt::format("{}: no kind of file that mote info reads; those are .toml, .json, "
-                                ".vdb, .ply, .csv, .npy and .exr",
+                                ".vdb, .ply, .csv, .npy, .obj, .gltf, .glb and .exr",
                                 printable(file)));
     }
 }

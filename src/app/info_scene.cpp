@@ -118,9 +118,10 @@ std::string describe_scene(const SceneDescription& scene, int frame)
     text += fmt::format("lights       {}{}\n", prepared.lights.size(),
                         prepared.environment ? " and an environment" : "");
     if (prepared.surfaces) {
-        text +=
-            fmt::format("objects      {} with {} meshes, {}\n", prepared.surfaces->objects.size(),
-                        stats.meshes_built, format_bytes(static_cast<double>(stats.mesh_bytes)));
+        text += fmt::format("objects      {} with {} meshes, {}; {} of textures\n",
+                            prepared.surfaces->objects.size(), stats.meshes_built,
+                            format_bytes(static_cast<double>(stats.mesh_bytes)),
+                            format_bytes(static_cast<double>(stats.texture_bytes)));
     }
     text +=
         fmt::format("memory       {} of volumes, {} not finite and {} negative values replaced\n",

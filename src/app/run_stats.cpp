@@ -65,6 +65,7 @@ Json to_json(const FrameRecord& r)
                     {"meshes_reused", r.prepare.meshes_reused},
                     {"instance_trees_built", r.prepare.instance_trees_built},
                     {"mesh_bytes", r.prepare.mesh_bytes},
+                    {"texture_bytes", r.prepare.texture_bytes},
                     {"non_finite_values", r.prepare.non_finite_values},
                     {"negative_values", r.prepare.negative_values}};
     j["paths"] = r.render.paths;

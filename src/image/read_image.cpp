@@ -45,8 +45,10 @@ constexpr std::array<Format, 3> formats{{
                 fmt::format("cannot read \"{}\": {}", printable(path, 1000), reason));
 }
 
-const Format& format_of(const std::string& path)
+const Format& format_of(const ImageSource& source)
 {
+    const std::string& path = source.path;
+    if (!source.bytes.empty()) return formats[2];
     const std::string extension = lower_extension(path);
     for (const Format& format : formats) {
         if (format.extension == extension) return format;
@@ -54,7 +56,8 @@ const Format& format_of(const std::string& path)
     fail(path, "only .exr, .hdr and .png images are read; convert it to one of them");
 }
 
-void check_content(const std::string& path, const Format& format)
+/// First bytes of a file.
+std::string start_of(const std::string& path)
 {
     std::error_code error;
     if (fs::is_directory(path, error)) fail(path, "it is a folder, not an image");
@@ -62,8 +65,19 @@ void check_content(const std::string& path, const Format& format)
     if (!file) fail(path, std::generic_category().message(errno));
     std::array<char, 8> start{};
     file.read(start.data(), start.size());
-    const std::string_view read(start.data(), static_cast<size_t>(file.gcount()));
-    if (!read.starts_with(format.magic)) {
+    return {start.data(), static_cast<size_t>(file.gcount())};
+}
+
+void check_content(const ImageSource& source, const Format& format)
+{
+    const std::string& path = source.path;
+    if (!source.bytes.empty()) {
+        const std::string_view start(reinterpret_cast<const char*>(source.bytes.data()),
+                                     std::min(source.bytes.size(), format.magic.size()));
+        if (start == format.magic) return;
+        fail(path, "only PNG images may be inside of other files; convert it to PNG");
+    }
+    if (!start_of(path).starts_with(format.magic)) {
         fail(path, fmt::format("it is no {} file, in spite of its name; check how it was made",
                                format.shown_name));
     }
@@ -109,26 +123,57 @@ void sanitize(Buffer2D<Spectrum>& image, ImageReadReport& report)
     }
 }
 
+StoredImage read_stored(const ImageSource& source, int channels)
+{
+    const Format& format = format_of(source);
+    check_content(source, format);
+    static const ReadWithOiio read_with_oiio = load_plugin();
+    StoredImage image;
+    std::string error;
+    if (!read_with_oiio(source, format.reader, channels, image, error)) {
+        fail(source.path, fmt::format("the {} file is damaged or not supported ({})",
+                                      format.shown_name, printable(error)));
+    }
+    return image;
+}
+
+/// RGB of an image of three channels, as stored; 8-bit values in [0,1].
+Buffer2D<Spectrum> to_spectra(const StoredImage& image)
+{
+    Buffer2D<Spectrum> out(image.width, image.height);
+    size_t i = 0;
+    for (Spectrum& s : out) {
+        for (int c = 0; c < 3; ++c, ++i) {
+            s[c] =
+                image.bytes.empty() ? image.floats[i] : static_cast<float>(image.bytes[i]) / 255.0f;
+        }
+    }
+    return out;
+}
+
 }  // namespace
 
 Buffer2D<Spectrum> read_image(const std::string& path, ImageReadReport* report)
 {
-    const Format& format = format_of(path);
-    check_content(path, format);
-    static const ReadWithOiio read_with_oiio = load_plugin();
-    Buffer2D<Spectrum> image;
-    std::string error;
-    if (!read_with_oiio(path.c_str(), format.reader, image, error)) {
-        fail(path, fmt::format("the {} file is damaged or not supported ({})", format.shown_name,
-                               printable(error)));
-    }
-    if (format.extension == ".png") {
+    const ImageSource source{path, {}};
+    Buffer2D<Spectrum> image = to_spectra(read_stored(source, 3));
+    if (stores_srgb(source)) {
         for (Spectrum& s : image) s = {decode_srgb(s.x), decode_srgb(s.y), decode_srgb(s.z)};
     }
     ImageReadReport counts;
     sanitize(image, counts);
     if (report) *report = counts;
     return image;
+}
+
+StoredImage read_stored_image(const ImageSource& source)
+{
+    return read_stored(source, 4);
+}
+
+bool stores_srgb(const ImageSource& source)
+{
+    return format_of(source).extension == ".png";
 }
 
 }  // namespace mote

@@ -17,6 +17,7 @@ std::optional<Attractor> attractor_of(const Light& light)
 {
     if (const auto* point = std::get_if<PointLight>(&light))
         return Attractor{point->position, 0.0f};
+    if (const auto* spot = std::get_if<SpotLight>(&light)) return Attractor{spot->position, 0.0f};
     if (const auto* sphere = std::get_if<SphereLight>(&light)) {
         return Attractor{sphere->position, sphere->radius};
     }

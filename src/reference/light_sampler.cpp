@@ -86,7 +86,8 @@ void LightSampler::add_emitters(const Scene& scene, const PathTracerParams& para
             const float fluence = luminance(distant->irradiance);
             add({LightSource::Lamp, index, cross_section * fluence, fluence, {}});
         } else if (shadow_rays || !can_be_met(light)) {
-            add({LightSource::Lamp, index, light_power(light, 1.0f), 0.0f, light_bounds(light)});
+            add({LightSource::Lamp, index, brightest_power(light, 1.0f), 0.0f,
+                 light_bounds(light)});
         }
     }
     if (!shadow_rays) return;

@@ -40,6 +40,15 @@ Vec2 numbers_of_triangle(float u, float v)
     return {sqr(root), root > 0.0f ? v / root : 0.0f};
 }
 
+/// Whether an object that does not move is mirrored: its lights' edges are then the triangles' in
+/// the other order (see world_triangle).
+bool is_mirrored_at_rest(const Surfaces& surfaces, int object)
+{
+    const Vec3d scale =
+        surfaces.bvh->instances()[static_cast<size_t>(object)].world_from_object.keys.front().scale;
+    return scale.x * scale.y * scale.z < 0.0;
+}
+
 bool looks_for(const DirectionTargets& finds, const Light& lamp)
 {
     return (finds.quads && std::holds_alternative<QuadLight>(lamp)) ||
@@ -87,7 +96,10 @@ struct Reporter {
         const auto hit = intersect(*scene.surfaces, ray, {0.0f, infinity});
         if (!hit) return;
         const int first = scene.first_light_of_object[static_cast<size_t>(hit->object)];
-        if (first >= 0) lamp(first + hit->triangle, numbers_of_triangle(hit->u, hit->v));
+        if (first < 0) return;
+        const bool is_mirrored = is_mirrored_at_rest(*scene.surfaces, hit->object);
+        lamp(first + hit->triangle, is_mirrored ? numbers_of_triangle(hit->v, hit->u)
+                                                : numbers_of_triangle(hit->u, hit->v));
     }
     void emissive_volume(int light, float u) const
     {

@@ -9,13 +9,14 @@
 namespace mote {
 
 /// A light at a finite place, reduced to what choosing among many of them needs: lamps at points,
-/// spheres, quads, triangles, and emissive volumes as one light each.
+/// spots, spheres, quads, triangles, and emissive volumes as one light each.
 struct LocalLight {
     int id = -1;           ///< what LightPick::light returns
     Vec3 position{0.0f};   ///< centre of its power [m]
     float spread2 = 0.0f;  ///< mean squared distance of its power from `position` [m^2]
     Vec3 facing{0.0f};     ///< normal of a light that shines to one side, 0 of all others
-    float power = 0.0f;    ///< luminance, > 0 and finite [W, relative]
+    float power = 0.0f;    ///< luminance, > 0 and finite [W, relative]; of spots as
+                           ///< if their cone were wide
 };
 
 /// Local lights of a list of lamps; id = position in the list. Lights at infinity and lights

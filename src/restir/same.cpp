@@ -1,5 +1,7 @@
 #include "restir/same.h"
 
+#include "scene/triangle_emission.h"
+
 namespace mote {
 
 bool is_same(const MovingTransform& a, const MovingTransform& b)
@@ -14,6 +16,12 @@ bool is_same(const Light& a, const Light& b)
         const auto& q = std::get<PointLight>(b);
         return p->position == q.position && p->intensity == q.intensity;
     }
+    if (const auto* p = std::get_if<SpotLight>(&a)) {
+        const auto& q = std::get<SpotLight>(b);
+        return p->position == q.position && p->direction == q.direction &&
+               p->intensity == q.intensity && p->cos_inner == q.cos_inner &&
+               p->cos_outer == q.cos_outer;
+    }
     if (const auto* p = std::get_if<DistantLight>(&a)) {
         const auto& q = std::get<DistantLight>(b);
         return p->direction == q.direction && p->irradiance == q.irradiance;
@@ -27,7 +35,10 @@ bool is_same(const Light& a, const Light& b)
                p.radiance == q.radiance && p.two_sided == q.two_sided;
     };
     if (const auto* p = std::get_if<TriangleLight>(&a)) {
-        return is_same_area(*p, std::get<TriangleLight>(b));
+        const auto& q = std::get<TriangleLight>(b);
+        const bool is_same_look =
+            p->texture && q.texture ? p->texture->is_same(*q.texture) : p->texture == q.texture;
+        return is_same_look && is_same_area(*p, q);
     }
     return is_same_area(std::get<QuadLight>(a), std::get<QuadLight>(b));
 }
@@ -42,7 +53,9 @@ bool is_same(const Surfaces* a, const Surfaces* b)
     if (a == b || !a || !b) return a == b;
     const auto& p = a->bvh->instances();
     const auto& q = b->bvh->instances();
-    if (p.size() != q.size() || !(a->materials == b->materials)) return false;
+    if (p.size() != q.size() || !(a->materials == b->materials) || !(a->textures == b->textures)) {
+        return false;
+    }
     for (size_t i = 0; i < p.size(); ++i) {
         if (p[i].mesh != q[i].mesh || !is_same(p[i].world_from_object, q[i].world_from_object) ||
             a->objects[i].material != b->objects[i].material) {

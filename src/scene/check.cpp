@@ -87,6 +87,18 @@ struct Checker {
         }
     }
 
+    /// Pictures that could not be seen.
+    void check_pictures(std::initializer_list<std::string_view> path,
+                        const MaterialDescription& material)
+    {
+        if (!material.files.emission.empty() && !(material.emission > 0.0f)) {
+            report(path, "\"emission_texture\" multiplies \"emission\", which is 0; set it");
+        }
+        if (material.files.alpha_cutoff > 0.0f && material.files.color.empty()) {
+            report(path, "\"alpha_cutoff\" is about the alpha of \"color_texture\"; name one");
+        }
+    }
+
     void check_camera();
     void check_volumes();
     void check_particles();
@@ -99,6 +111,23 @@ void Checker::check_camera()
     const CameraDescription& camera = scene.camera;
     if (camera.shutter_close < camera.shutter_open) {
         report({"camera", "shutter_close"}, "\"shutter_close\" is before \"shutter_open\"");
+    }
+    if (!camera.file.path.empty()) {
+        const Node* table = root.find("camera");
+        for (const char* key : {"position", "look_at", "up", "fov", "keys"}) {
+            if (table && table->find(key)) {
+                report({"camera", key}, "\"{}\" and \"file\" of the camera exclude each other",
+                       key);
+            }
+        }
+        if (camera.lens_radius > 0.0 && !(camera.focus_distance > 0.0)) {
+            report({"camera", "lens_radius"},
+                   "a camera with \"file\" and \"lens_radius\" needs a \"focus_distance\"");
+        }
+        return;
+    }
+    if (!camera.file.name.empty()) {
+        report({"camera", "file"}, "\"file\" of the camera needs a \"path\"");
     }
     CameraDescription at = camera;
     const auto check_view = [&](std::initializer_list<std::string_view> path) {
@@ -195,7 +224,9 @@ void Checker::check_lights()
         if (light.kind == LightKind::Environment && ++environments > 1) {
             report({"lights", index, "type"}, "a scene has one environment light");
         }
-        if (light.kind == LightKind::Distant && !(glm::length(light.direction) > 1e-18f)) {
+        const bool has_direction =
+            light.kind == LightKind::Distant || light.kind == LightKind::Spot;
+        if (has_direction && !(glm::length(light.direction) > 1e-18f)) {
             report({"lights", index, "direction"}, "\"direction\" in [lights] must not be 0");
         }
         const float area = glm::length(glm::cross(light.edge_u, light.edge_v));
@@ -218,6 +249,9 @@ void Checker::check_objects()
             report({"materials", std::to_string(i)}, "a material needs a \"name\" to be used by");
         }
     }
+    for (size_t i = 0; i < scene.materials.size(); ++i) {
+        check_pictures({"materials", std::to_string(i)}, scene.materials[i]);
+    }
     const Node* list = root.find("objects");
     for (size_t i = 0; i < scene.objects.size(); ++i) {
         const ObjectDescription& object = scene.objects[i];
@@ -229,6 +263,7 @@ void Checker::check_objects()
             report({"objects", index, "material"}, "no [[materials]] entry is named \"{}\"{}",
                    printable(name, 60), did_you_mean(name, materials));
         }
+        check_pictures({"objects", index, "material"}, object.material);
         const bool in_file = list && list->kind == Node::Kind::Array && i < list->children.size();
         const Node* material = in_file ? list->children[i].find("material") : nullptr;
         const bool has_more =

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -27,7 +28,14 @@ struct CameraKey {
     std::optional<double> fov, focus_distance, lens_radius;
 };
 
+/// A camera of a glTF file.
+struct CameraFile {
+    std::string path;  ///< relative to the scene file; empty: none
+    std::string name;  ///< of the camera or of its node; empty: the first
+};
+
 struct CameraDescription {
+    CameraFile file;                ///< in place of position, look_at, up, fov and keys
     Vec3d position{0.0, 0.0, 5.0};  ///< [m]
     Vec3d look_at{0.0};             ///< [m]
     Vec3d up{0.0, 1.0, 0.0};
@@ -88,17 +96,19 @@ struct ParticlesDescription {
     float voxel_size = 0.02f;  ///< of the rasterised grids [m]
 };
 
-enum class LightKind { Point, Distant, Sphere, Quad, Environment };
+enum class LightKind { Point, Spot, Distant, Sphere, Quad, Environment };
 
 /// A light, or a swarm of them. Positions are in the light's object space; `transform` moves it.
 struct LightDescription {
     std::string name;
     LightKind kind = LightKind::Point;
     Vec3 position{0.0f};               ///< point, sphere: centre; quad: corner [m]
-    Vec3 direction{0.0f, 1.0f, 0.0f};  ///< distant: towards the light
+    Vec3 direction{0.0f, 1.0f, 0.0f};  ///< distant: towards the light; spot: from it
     Vec3 edge_u{1.0f, 0.0f, 0.0f}, edge_v{0.0f, 0.0f, 1.0f};  ///< quad [m]
-    float radius = 0.1f;                                      ///< sphere [m]
-    Spectrum color{1.0f};                                     ///< multiplies strength
+    float cone_angle = 45.0f;                                 ///< spot: from side to side [degrees]
+    float blend = 0.2f;      ///< spot: share of the cone that fades, [0,1]
+    float radius = 0.1f;     ///< sphere [m]
+    Spectrum color{1.0f};    ///< multiplies strength
     float strength = 1.0f;   ///< point: [W/sr]; distant: [W/m^2]; others: [W/(m^2 sr)]
     bool two_sided = false;  ///< quad
     std::string image;       ///< environment: .exr, .hdr or .png file
@@ -108,6 +118,19 @@ struct LightDescription {
     std::vector<TransformKey> transform;
 };
 
+/// Image files of a material's pictures, relative to the scene file; empty: none.
+struct MaterialFiles {
+    std::string color, roughness, metallic, normal, emission;
+    float normal_strength = 1.0f;
+    float alpha_cutoff = 0.0f;  ///< [0,1]
+};
+
+/// All of the files that may be given.
+[[nodiscard]] inline std::array<const std::string*, 5> picture_files(const MaterialFiles& files)
+{
+    return {&files.color, &files.roughness, &files.metallic, &files.normal, &files.emission};
+}
+
 /// What objects are made of.
 struct MaterialDescription {
     /// Of a [[materials]] entry: its own. Of an object's material: of the entry that it is, which
@@ -116,12 +139,14 @@ struct MaterialDescription {
     Material look;                  ///< its emission is that of the next two fields
     float emission = 0.0f;          ///< [W/(m^2 sr)]
     Spectrum emission_color{1.0f};  ///< multiplies it
+    MaterialFiles files;
 };
 
 /// A thing made of triangles.
 struct ObjectDescription {
     std::string name;
-    SequenceParams file;  ///< a mesh: .obj or .ply
+    SequenceParams file;        ///< a mesh, .obj or .ply, or a .gltf or .glb file
+    bool has_material = false;  ///< else: that of a glTF file, the default one of others
     MaterialDescription material;
     std::vector<TransformKey> transform;  ///< world from object
 };

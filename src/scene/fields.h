@@ -105,6 +105,7 @@ class FieldVisitor {
 // The one field list: fields_scene.cpp and fields_content.cpp.
 void describe(FieldVisitor& visitor, SceneDescription& scene);
 void describe(FieldVisitor& visitor, CameraDescription& camera);
+void describe(FieldVisitor& visitor, CameraFile& file);
 void describe(FieldVisitor& visitor, CameraKey& key);
 void describe(FieldVisitor& visitor, RenderDescription& render);
 void describe(FieldVisitor& visitor, PathTracerParams& path);

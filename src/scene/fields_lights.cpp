@@ -3,7 +3,7 @@
 namespace mote {
 namespace {
 
-constexpr std::array light_names = {"point", "distant", "sphere", "quad", "environment"};
+constexpr std::array light_names = {"point", "spot", "distant", "sphere", "quad", "environment"};
 
 }  // namespace
 
@@ -22,7 +22,7 @@ void describe(FieldVisitor& v, LightDescription& light)
           light.color);
     visit(v,
           {.key = "strength",
-           .doc = "point: intensity [W/sr]; distant: irradiance [W/m^2]; others: radiance "
+           .doc = "point, spot: intensity [W/sr]; distant: irradiance [W/m^2]; others: radiance "
                   "[W/(m^2 sr)]",
            .range = between(0, 1e20),
            .also = "intensity radiance irradiance power energy"},
@@ -32,14 +32,29 @@ void describe(FieldVisitor& v, LightDescription& light)
            .doc = "Centre; quad: a corner",
            .unit = "m",
            .range = length_range,
-           .used_by = "point sphere quad"},
+           .used_by = "point spot sphere quad"},
           light.position);
     visit(v,
           {.key = "direction",
-           .doc = "Towards the light, any length",
+           .doc = "distant: towards the light; spot: where it shines; any length",
            .range = length_range,
-           .used_by = "distant"},
+           .used_by = "distant spot"},
           light.direction);
+    visit(v,
+          {.key = "cone_angle",
+           .doc = "Of the cone, from side to side",
+           .unit = "degrees",
+           .range = Range{0.0, 180.0, true, false},
+           .also = "angle cone spot_angle spot_size",
+           .used_by = "spot"},
+          light.cone_angle);
+    visit(v,
+          {.key = "blend",
+           .doc = "Share of the cone that fades towards its edge; 0: sharp",
+           .range = between(0, 1),
+           .also = "inner_angle penumbra softness",
+           .used_by = "spot"},
+          light.blend);
     visit(v,
           {.key = "radius",
            .doc = "Radius of the sphere",
@@ -74,18 +89,20 @@ void describe(FieldVisitor& v, LightDescription& light)
           {.key = "count",
            .doc = "A swarm: this many copies, scattered over `spread`",
            .range = between(1, 1'000'000),
-           .used_by = "point sphere"},
+           .used_by = "point spot sphere"},
           light.count);
     visit(v,
           {.key = "spread",
            .doc = "Edges of the box around `position` that holds the copies",
            .unit = "m",
            .range = between(0, 1e7),
-           .used_by = "point sphere",
+           .used_by = "point spot sphere",
            .scalar_ok = true},
           light.spread);
-    visit(v, {.key = "seed", .doc = "Chooses the places of the copies", .used_by = "point sphere"},
-          light.seed);
+    visit(
+        v,
+        {.key = "seed", .doc = "Chooses the places of the copies", .used_by = "point spot sphere"},
+        light.seed);
     visit_transform(v, light.transform);
 }
 

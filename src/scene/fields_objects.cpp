@@ -5,6 +5,47 @@ namespace {
 
 constexpr std::array material_names = {"diffuse", "metallic_roughness", "dielectric"};
 
+void visit_files(FieldVisitor& v, MaterialFiles& files)
+{
+    visit(v,
+          {.key = "color_texture",
+           .doc = "Picture (.png, .exr, .hdr) that multiplies `color`, by the mesh's texture "
+                  "coordinates; repeated without end",
+           .also = "texture map base_color_texture albedo_texture diffuse_texture"},
+          files.color);
+    visit(v,
+          {.key = "roughness_texture",
+           .doc = "Its green multiplies `roughness`; grey pictures and glTF's serve alike",
+           .also = "metallic_roughness_texture",
+           .used_by = "metallic_roughness dielectric"},
+          files.roughness);
+    visit(v,
+          {.key = "metallic_texture",
+           .doc = "Its blue multiplies `metallic`",
+           .used_by = "metallic_roughness"},
+          files.metallic);
+    visit(v,
+          {.key = "normal_texture",
+           .doc = "Tangent-space normal map, green upwards (OpenGL's)",
+           .also = "normal_map bump bump_texture"},
+          files.normal);
+    visit(v,
+          {.key = "normal_strength",
+           .doc = "Multiplies the slopes of `normal_texture`",
+           .range = between(0, 1000)},
+          files.normal_strength);
+    visit(v,
+          {.key = "emission_texture", .doc = "Multiplies `emission`", .also = "emissive_texture"},
+          files.emission);
+    visit(v,
+          {.key = "alpha_cutoff",
+           .doc = "Where the alpha of `color_texture` is below, there is no surface; 0: everywhere "
+                  "is",
+           .range = between(0, 1),
+           .also = "alpha opacity cutout mask"},
+          files.alpha_cutoff);
+}
+
 }  // namespace
 
 void describe(FieldVisitor& v, MaterialDescription& material)
@@ -69,24 +110,30 @@ void describe(FieldVisitor& v, MaterialDescription& material)
            .doc = "Both sides look alike; else the back is black and dark. Of no meaning for glass",
            .also = "doubleSided double_sided"},
           look.two_sided);
+    visit_files(v, material.files);
 }
 
 void describe(FieldVisitor& v, ObjectDescription& object)
 {
     visit(v, {.key = "name", .doc = "For messages and overrides"}, object.name);
-    visit_table(v,
-                {.key = "file",
-                 .doc = "Mesh (.obj, .ply), one file or a sequence; text alone is its `path`",
-                 .required = true,
-                 .also = "mesh path obj ply",
-                 .shorthand = "path"},
-                object.file);
-    visit_table(v,
-                {.key = "material",
-                 .doc = "What it is made of; text alone is the `name` of a [[materials]] entry",
-                 .also = "color",
-                 .shorthand = "name"},
-                object.material);
+    visit_table(
+        v,
+        {.key = "file",
+         .doc = "Mesh (.obj, .ply) or glTF file (.gltf, .glb), one or a sequence; text alone is "
+                "its `path`",
+         .required = true,
+         .also = "mesh path obj ply gltf glb",
+         .shorthand = "path"},
+        object.file);
+    const Field material{.key = "material",
+                         .doc =
+                             "What it is made of; text alone is the `name` of a [[materials]] "
+                             "entry. Default: what a glTF file says, else a matt grey",
+                         .also = "color",
+                         .shorthand = "name"};
+    const bool has_material = v.has(material, object.has_material);
+    if (v.assigns()) object.has_material = has_material;
+    if (has_material) visit_table(v, material, object.material);
     visit_transform(v, object.transform);
 }
 

@@ -63,8 +63,23 @@ void describe(FieldVisitor& v, SceneDescription& scene)
                scene.objects);
 }
 
+void describe(FieldVisitor& v, CameraFile& file)
+{
+    visit(v, {.key = "path", .doc = "glTF file (.gltf, .glb), relative to the scene file"},
+          file.path);
+    visit(v, {.key = "name", .doc = "Of the camera or of its node; default: the first one"},
+          file.name);
+}
+
 void describe(FieldVisitor& v, CameraDescription& camera)
 {
+    visit_table(v,
+                {.key = "file",
+                 .doc = "A camera of a glTF file, with its motion, in place of `position`, "
+                        "`look_at`, `up`, `fov` and `keys`; text alone is the `path`",
+                 .also = "from gltf glb",
+                 .shorthand = "path"},
+                camera.file);
     visit(v,
           {.key = "position",
            .doc = "Place of the lens",

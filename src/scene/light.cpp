@@ -1,6 +1,7 @@
 #include "scene/light.h"
 
 #include "core/sampling.h"
+#include "scene/triangle_emission.h"
 
 namespace mote {
 namespace {
@@ -12,6 +13,26 @@ std::optional<LightSample> sample(const PointLight& light, Vec3 x, Vec2 /*u*/)
     if (!(distance2 > 0.0f)) return std::nullopt;
     const float distance = std::sqrt(distance2);
     return LightSample{to_light / distance, distance, light.intensity / distance2, 1.0f, true};
+}
+
+/// Share of a spot's intensity that goes along `direction` [unit].
+float cone_falloff(const SpotLight& light, Vec3 direction)
+{
+    const float cosine = glm::dot(light.direction, direction);
+    if (cosine >= light.cos_inner) return 1.0f;
+    if (!(cosine > light.cos_outer)) return 0.0f;
+    const float t = (cosine - light.cos_outer) / (light.cos_inner - light.cos_outer);
+    return sqr(t) * (3.0f - 2.0f * t);
+}
+
+std::optional<LightSample> sample(const SpotLight& light, Vec3 x, Vec2 u)
+{
+    std::optional<LightSample> out = sample(PointLight{light.position, light.intensity}, x, u);
+    if (!out) return out;
+    const float falloff = cone_falloff(light, -out->wi);
+    if (!(falloff > 0.0f)) return std::nullopt;
+    out->Li *= falloff;
+    return out;
 }
 
 std::optional<LightSample> sample(const DistantLight& light, Vec3 /*x*/, Vec2 /*u*/)
@@ -68,8 +89,8 @@ std::optional<LightSample> sample(const TriangleLight& light, Vec3 x, Vec2 u)
 {
     const Vec3 normal_area = 0.5f * glm::cross(light.edge_u, light.edge_v);
     const float root = std::sqrt(u.x);
-    Vec3 to_point =
-        light.corner + root * (1.0f - u.y) * light.edge_u + root * u.y * light.edge_v - x;
+    const Vec2 place(root * (1.0f - u.y), root * u.y);
+    Vec3 to_point = light.corner + place.x * light.edge_u + place.y * light.edge_v - x;
     const float distance2 = glm::dot(to_point, to_point);
     if (!(distance2 > 0.0f)) return std::nullopt;
     const float distance = std::sqrt(distance2);
@@ -82,10 +103,16 @@ std::optional<LightSample> sample(const TriangleLight& light, Vec3 x, Vec2 u)
     to_point += std::copysign(margin, facing) * glm::normalize(normal_area);
     const float end = glm::length(to_point);
     if (!(glm::dot(to_point, wi) > 0.0f)) return std::nullopt;  // x is closer than the margin
-    return LightSample{to_point / end, end, light.radiance, distance2 / cos_area, false};
+    const Spectrum Le = light.texture ? light.texture->at(place) : light.radiance;
+    return LightSample{to_point / end, end, Le, distance2 / cos_area, false};
 }
 
 std::optional<LightHit> hit(const PointLight& /*light*/, Vec3 /*x*/, Vec3 /*wi*/)
+{
+    return std::nullopt;
+}
+
+std::optional<LightHit> hit(const SpotLight& /*light*/, Vec3 /*x*/, Vec3 /*wi*/)
 {
     return std::nullopt;
 }
@@ -132,6 +159,11 @@ float pdf(const PointLight& /*light*/, Vec3 /*x*/, Vec3 /*wi*/)
     return 0.0f;
 }
 
+float pdf(const SpotLight& /*light*/, Vec3 /*x*/, Vec3 /*wi*/)
+{
+    return 0.0f;
+}
+
 float pdf(const DistantLight& /*light*/, Vec3 /*x*/, Vec3 /*wi*/)
 {
     return 0.0f;
@@ -167,6 +199,13 @@ float power(const PointLight& light, float /*scene_radius*/)
     return 4.0f * pi * luminance(light.intensity);
 }
 
+float power(const SpotLight& light, float /*scene_radius*/)
+{
+    // The mean of a smoothstep is 1/2, and cosines are uniform over the sphere.
+    const float solid_angle = 2.0f * pi * (1.0f - 0.5f * (light.cos_inner + light.cos_outer));
+    return solid_angle * luminance(light.intensity);
+}
+
 float power(const DistantLight& light, float scene_radius)
 {
     return pi * sqr(scene_radius) * luminance(light.irradiance);
@@ -190,6 +229,11 @@ float power(const TriangleLight& light, float /*scene_radius*/)
 }
 
 Bounds3 bounds(const PointLight& light)
+{
+    return {light.position, light.position};
+}
+
+Bounds3 bounds(const SpotLight& light)
 {
     return {light.position, light.position};
 }
@@ -243,6 +287,14 @@ std::optional<LightHit> hit_light(const Light& light, Vec3 x, Vec3 wi)
 float light_power(const Light& light, float scene_radius)
 {
     return std::visit([&](const auto& l) { return power(l, scene_radius); }, light);
+}
+
+float brightest_power(const Light& light, float scene_radius)
+{
+    if (const auto* spot = std::get_if<SpotLight>(&light)) {
+        return 4.0f * pi * luminance(spot->intensity);
+    }
+    return light_power(light, scene_radius);
 }
 
 Bounds3 light_bounds(const Light& light)

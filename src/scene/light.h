@@ -10,11 +10,22 @@
 namespace mote {
 
 struct EnvironmentMap;
+struct TriangleEmission;
 
 /// Point light. intensity [W/sr].
 struct PointLight {
     Vec3 position{0.0f};
     Spectrum intensity{1.0f};
+};
+
+/// Light from a point into a cone. It fades between the inner and the outer angle by a smoothstep
+/// of the cosine.
+struct SpotLight {
+    Vec3 position{0.0f};
+    Vec3 direction{0.0f, -1.0f, 0.0f};  ///< axis, away from the light [unit]
+    Spectrum intensity{1.0f};           ///< within the inner cone [W/sr]
+    float cos_inner = 0.9f;             ///< at least cos_outer
+    float cos_outer = 0.8f;
 };
 
 /// Parallel light from infinity. `direction` points from the scene towards the light [unit];
@@ -49,9 +60,10 @@ struct TriangleLight {
     Vec3 corner{0.0f};
     Vec3 edge_u{1.0f, 0.0f, 0.0f};
     Vec3 edge_v{0.0f, 0.0f, 1.0f};
-    Spectrum radiance{1.0f};
+    Spectrum radiance{1.0f};  ///< textured: its mean over the triangle
     bool two_sided = false;
     float offset = 0.0f;  ///< shadow rays end this far in front of it, clear of its mesh [m]
+    std::shared_ptr<const TriangleEmission> texture;  ///< null: the same radiance everywhere
 };
 
 /// Light from all directions: a constant, or radiance times a latitude-longitude image.
@@ -62,7 +74,8 @@ struct EnvironmentLight {
 };
 
 /// To add a light: write its struct, list it here, then fix the compile errors in light.cpp.
-using Light = std::variant<PointLight, DistantLight, SphereLight, QuadLight, TriangleLight>;
+using Light =
+    std::variant<PointLight, DistantLight, SphereLight, QuadLight, TriangleLight, SpotLight>;
 
 /// Light arriving at a point along one sampled direction.
 struct LightSample {
@@ -91,6 +104,11 @@ struct LightHit {
 
 /// Total emitted power [W] (distant lights: through a disk of the scene's radius).
 [[nodiscard]] float light_power(const Light& light, float scene_radius);
+
+/// Power [W] of a light that is as bright everywhere as this one is at its brightest: what choosing
+/// among lights goes by. More than light_power for spots alone: within a narrow cone they are
+/// bright whatever their power.
+[[nodiscard]] float brightest_power(const Light& light, float scene_radius);
 
 /// Box around a light; empty for distant lights.
 [[nodiscard]] Bounds3 light_bounds(const Light& light);

@@ -10,6 +10,7 @@
 #include "core/text.h"
 #include "image/read_image.h"
 #include "particles/sequence.h"
+#include "scene/gltf_camera.h"
 #include "scene/grid_cache.h"
 #include "scene/prepare_camera.h"
 #include "scene/prepare_lights.h"
@@ -79,6 +80,13 @@ struct Preparation {
     [[nodiscard]] GridPlan plan_procedural(const VolumeDescription& volume, size_t index) const;
     [[nodiscard]] Volume make_volume(const VolumeDescription& volume, size_t index,
                                      const GridPlan& plan) const;
+    [[nodiscard]] Camera camera_over(double from, double to) const
+    {
+        if (!description.camera.file.path.empty()) {
+            return make_gltf_camera(description, cache.gltfs, from, to);
+        }
+        return make_camera(description.camera, description.render, from, to);
+    }
     void add_environment(Scene& scene) const;
     void add_next_frame(Scene& scene, const std::vector<size_t>& shown) const;
 };
@@ -224,7 +232,7 @@ void Preparation::add_environment(Scene& scene) const
 void Preparation::add_next_frame(Scene& scene, const std::vector<size_t>& shown) const
 {
     NextFrame next;
-    next.camera = make_camera(description.camera, description.render, open() + 1.0, close() + 1.0);
+    next.camera = camera_over(open() + 1.0, close() + 1.0);
     for (const size_t index : shown) {
         next.world_from_object.push_back(
             over_shutter(description.volumes[index].transform, open() + 1.0, close() + 1.0));
@@ -285,8 +293,7 @@ Scene prepare_frame(const SceneDescription& description, int frame, const Prepar
     cache.impl().keep_only(wanted);
 
     Scene scene;
-    scene.camera =
-        make_camera(description.camera, description.render, prepare.open(), prepare.close());
+    scene.camera = prepare.camera_over(prepare.open(), prepare.close());
     const PlanContext context{frame, description.fps, description.base_dir};
     for (size_t i = 0; i < plans.size(); ++i) {
         build_grids(plans[i], context, cache.impl(), stats);

@@ -22,6 +22,7 @@ struct PrepareStats {
     int meshes_reused = 0;         ///< unchanged since an earlier frame of this run
     int instance_trees_built = 0;  ///< 1 if anything with a surface is new or has moved
     size_t mesh_bytes = 0;
+    size_t texture_bytes = 0;
     int64_t non_finite_values = 0;  ///< set to 0 on load
     int64_t negative_values = 0;    ///< clamped to 0 on load
 };

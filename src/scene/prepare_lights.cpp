@@ -23,6 +23,12 @@ Light make_light(const LightDescription& light, const Trs& trs, int copy)
             const Vec3d direction = trs.rotate * glm::normalize(Vec3d(light.direction));
             return DistantLight{Vec3(direction), strength};
         }
+        case LightKind::Spot: {
+            const Vec3d direction = trs.rotate * glm::normalize(Vec3d(light.direction));
+            const float outer = glm::radians(0.5f * light.cone_angle);
+            return SpotLight{position, Vec3(direction), strength,
+                             std::cos(outer * (1.0f - light.blend)), std::cos(outer)};
+        }
         case LightKind::Sphere: {
             const Vec3 scale = glm::abs(Vec3(trs.scale));
             return SphereLight{position, light.radius * (scale.x + scale.y + scale.z) / 3.0f,
@@ -47,7 +53,8 @@ std::vector<Light> make_lights(const std::vector<LightDescription>& descriptions
         const bool is_black = light.strength * max_component(light.color) <= 0.0f;
         if (light.kind == LightKind::Environment || is_black) continue;
         const Trs trs = evaluate(light.transform, frame);
-        const bool is_swarm = light.kind == LightKind::Point || light.kind == LightKind::Sphere;
+        const bool is_swarm = light.kind == LightKind::Point || light.kind == LightKind::Spot ||
+                              light.kind == LightKind::Sphere;
         const int copies = is_swarm ? light.count : 1;
         for (int i = 0; i < copies; ++i) lights.push_back(make_light(light, trs, i));
     }

@@ -5,74 +5,33 @@
 #include <fmt/format.h>
 
 #include "particles/sequence.h"
+#include "scene/object_parts.h"
 #include "scene/surface_lights.h"
-#include "surfaces/load_mesh.h"
 
 namespace mote {
 namespace {
 
-/// An object shown at the frame.
-struct Shown {
-    const ObjectDescription* object = nullptr;
-    size_t index = 0;
-    std::string path;
-    std::string version;  ///< of its mesh
-};
-
-std::vector<Shown> shown_objects(const SceneDescription& description, int frame)
+std::vector<ShownObject> shown_objects(const SceneDescription& description, int frame)
 {
-    std::vector<Shown> shown;
+    std::vector<ShownObject> shown;
     for (size_t i = 0; i < description.objects.size(); ++i) {
         const ObjectDescription& object = description.objects[i];
         const auto path = resolve_sequence(object.file, frame, description.base_dir);
-        if (path) shown.push_back({&object, i, *path, file_version(*path)});
+        if (!path) continue;
+        const std::string name = object.name.empty() ? fmt::format("object {}", i) : object.name;
+        shown.push_back({&object, name, *path, file_version(*path)});
     }
     return shown;
 }
 
-/// Drops meshes that the frame does not show before it loads new ones.
-void load_meshes(const std::vector<Shown>& shown, SceneCache::Impl& cache, PrepareStats& stats)
+/// Drops meshes that the frame does not show, before it loads new ones.
+void drop_hidden(const std::vector<ShownObject>& shown, SceneCache::Impl& cache)
 {
     std::set<std::string> wanted;
-    for (const Shown& s : shown) wanted.insert(s.version);
+    for (const ShownObject& s : shown) wanted.insert(s.version);
     for (auto it = cache.meshes.begin(); it != cache.meshes.end();) {
         it = wanted.count(it->first) ? std::next(it) : cache.meshes.erase(it);
     }
-    for (const Shown& s : shown) {
-        if (cache.meshes.count(s.version)) continue;
-        cache.meshes[s.version] = std::make_shared<const MeshBvh>(load_mesh(s.path));
-        ++stats.meshes_built;
-    }
-    stats.meshes_reused += static_cast<int>(wanted.size()) - stats.meshes_built;
-    for (const auto& [version, mesh] : cache.meshes) stats.mesh_bytes += mesh->memory_bytes();
-}
-
-Material make_material(const MaterialDescription& from)
-{
-    Material material = from.look;
-    material.emission = from.emission * from.emission_color;
-    return material;
-}
-
-/// An object's own material, or the entry that it names.
-const MaterialDescription& material_of(const SceneDescription& description,
-                                       const ObjectDescription& object)
-{
-    if (object.material.name.empty()) return object.material;
-    const auto& list = description.materials;
-    const auto found = std::find_if(list.begin(), list.end(), [&](const auto& material) {
-        return material.name == object.material.name;
-    });
-    MOTE_ASSERT(found != list.end());  // check_scene
-    return *found;
-}
-
-/// Emissive objects stand still in the middle of the shutter, as lamps do.
-MovingTransform transform_of(const ObjectDescription& object, const Material& material, double open,
-                             double close)
-{
-    if (!material.is_emissive()) return over_shutter(object.transform, open, close);
-    return MovingTransform{{evaluate(object.transform, 0.5 * (open + close))}};
 }
 
 bool is_same(const std::vector<MeshInstance>& a, const std::vector<MeshInstance>& b)
@@ -83,33 +42,60 @@ bool is_same(const std::vector<MeshInstance>& a, const std::vector<MeshInstance>
                       });
 }
 
+std::vector<ObjectPart> make_parts(const std::vector<ShownObject>& shown,
+                                   const PartContext& context)
+{
+    std::vector<ObjectPart> parts;
+    for (const ShownObject& s : shown) {
+        is_gltf(s.path) ? add_gltf_parts(context, s, parts) : add_mesh_part(context, s, parts);
+    }
+    return parts;
+}
+
+void count_meshes(const std::vector<ObjectPart>& parts, const SceneCache::Impl& cache,
+                  PrepareStats& stats)
+{
+    std::set<const MeshBvh*> meshes;
+    for (const ObjectPart& part : parts) {
+        if (!meshes.insert(part.mesh.get()).second) continue;
+        stats.mesh_bytes += part.mesh->memory_bytes();
+    }
+    stats.meshes_reused += static_cast<int>(meshes.size()) - stats.meshes_built;
+    stats.texture_bytes += cache.textures.memory_bytes();
+}
+
 }  // namespace
 
 void prepare_surfaces(const SceneDescription& description, const ShutterTimes& times,
                       SceneCache::Impl& cache, PrepareStats& stats, Scene& scene)
 {
-    const std::vector<Shown> shown = shown_objects(description, times.frame);
+    const std::vector<ShownObject> shown = shown_objects(description, times.frame);
+    drop_hidden(shown, cache);
     if (shown.empty()) {
-        cache.meshes.clear();
+        cache.instances.reset();
+        cache.gltfs.drop_unused();
+        cache.textures.drop_unused();
+        return;
+    }
+    std::vector<ObjectPart> parts = make_parts(shown, {description, times, cache, stats});
+    cache.gltfs.drop_unused();
+    cache.textures.drop_unused();
+    if (parts.empty()) {
         cache.instances.reset();
         return;
     }
-    load_meshes(shown, cache, stats);
+    count_meshes(parts, cache, stats);
     Surfaces surfaces;
+    std::vector<MaterialTextures> textures;
     std::vector<MeshInstance> instances;
-    for (const Shown& s : shown) {
-        const std::string& name = s.object->name;
-        const Material material = make_material(material_of(description, *s.object));
-        surfaces.objects.push_back({name.empty() ? fmt::format("object {}", s.index) : name,
-                                    static_cast<int>(surfaces.materials.size())});
-        surfaces.materials.push_back(material);
-        instances.push_back({cache.meshes.at(s.version),
-                             transform_of(*s.object, material, times.open, times.close)});
-        if (scene.next) {
-            scene.next->world_from_surface.push_back(
-                transform_of(*s.object, material, times.open + 1.0, times.close + 1.0));
-        }
+    for (ObjectPart& part : parts) {
+        surfaces.objects.push_back({part.name, static_cast<int>(surfaces.materials.size())});
+        surfaces.materials.push_back(part.look.material);
+        textures.push_back(std::move(part.look.textures));
+        instances.push_back({part.mesh, std::move(part.world_from_object)});
+        if (scene.next) scene.next->world_from_surface.push_back(std::move(part.next));
     }
+    set_textures(surfaces, std::move(textures));
     if (!cache.instances || !is_same(cache.instances->instances(), instances)) {
         cache.instances = std::make_shared<const InstanceBvh>(std::move(instances));
         ++stats.instance_trees_built;

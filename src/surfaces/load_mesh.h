@@ -6,11 +6,14 @@
 
 namespace mote {
 
-/// One mesh file, told apart by its ending: Wavefront .obj (v, vn, f; materials are the scene's
-/// business) or .ply (ascii and binary; x y z, optional nx ny nz, faces of any size). Finished,
-/// with what was left out told as a warning. Throws Error(Input) naming the file and, for text,
-/// line and column.
+/// One mesh file, told apart by its ending: Wavefront .obj (v, vt, vn, f; materials are the scene's
+/// business) or .ply (ascii and binary; x y z, optional nx ny nz and s t or u v, faces of any
+/// size). Finished, with what was left out told as a warning. Throws Error(Input) naming the file
+/// and, for text, line and column.
 [[nodiscard]] Mesh load_mesh(const std::string& path);
+
+/// Tells what finish_mesh left out or mended, if anything.
+void warn_of_repairs(const MeshRepairs& repairs, const std::string& file);
 
 /// The readers, one per format; their meshes are not finished yet.
 [[nodiscard]] Mesh read_obj(const std::string& path);

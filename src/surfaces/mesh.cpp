@@ -47,7 +47,7 @@ void add_polygon(Mesh& mesh, std::span<const uint32_t> corners)
     }
 }
 
-MeshRepairs finish_mesh(Mesh& mesh, const std::string& file)
+MeshRepairs repair_mesh(Mesh& mesh, const std::string& file)
 {
     MeshRepairs repairs;
     if (mesh.triangles.size() >= max_triangles) {
@@ -66,20 +66,32 @@ MeshRepairs finish_mesh(Mesh& mesh, const std::string& file)
         if (is_usable(mesh, i, repairs)) mesh.triangles[kept++] = t;
     }
     mesh.triangles.resize(kept);
-    if (kept == 0) {
-        throw Error(ExitCode::Input,
-                    fmt::format("{}: holds no triangle that can be drawn ({} with vertices that "
-                                "are not finite, {} without area)",
-                                file, repairs.non_finite, repairs.degenerate));
-    }
     if (mesh.normals.size() != mesh.positions.size()) mesh.normals.clear();
     finish_normals(mesh, repairs);
+    if (mesh.uvs.size() != mesh.positions.size()) mesh.uvs.clear();
+    for (Vec2& uv : mesh.uvs) {
+        if (std::isfinite(uv.x) && std::isfinite(uv.y)) continue;
+        uv = Vec2(0.0f);
+        ++repairs.bad_uvs;
+    }
     for (Vec3& p : mesh.positions) {
         if (!is_finite(p)) p = Vec3(0.0f);  // of no triangle any more
     }
     mesh.bounds = {};
     for (const glm::uvec3& t : mesh.triangles) {
         for (int corner = 0; corner < 3; ++corner) mesh.bounds.extend(mesh.positions[t[corner]]);
+    }
+    return repairs;
+}
+
+MeshRepairs finish_mesh(Mesh& mesh, const std::string& file)
+{
+    const MeshRepairs repairs = repair_mesh(mesh, file);
+    if (mesh.triangles.empty()) {
+        throw Error(ExitCode::Input,
+                    fmt::format("{}: holds no triangle that can be drawn ({} with vertices that "
+                                "are not finite, {} without area)",
+                                file, repairs.non_finite, repairs.degenerate));
     }
     return repairs;
 }

@@ -19,8 +19,10 @@ MeshBvh::MeshBvh(Mesh mesh) : mesh_(std::move(mesh)), device_(embree_device())
                                mesh_.triangles.size());
     rtcCommitGeometry(geometry);
     scene_ = rtcNewScene(device_->get());
-    // Watertight along shared edges.
-    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+    // Watertight along shared edges; what has texture coordinates may be cut out (see cutout.h).
+    rtcSetSceneFlags(scene_, mesh_.uvs.empty()
+                                 ? RTC_SCENE_FLAG_ROBUST
+                                 : RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
     rtcAttachGeometry(scene_, geometry);
     rtcReleaseGeometry(geometry);
     commit_alone(scene_);
@@ -41,6 +43,7 @@ size_t MeshBvh::memory_bytes() const
 {
     // The tree takes about 100 bytes per triangle (Embree 3.13, 8 wide, robust).
     return mesh_.positions.capacity() * sizeof(Vec3) + mesh_.normals.capacity() * sizeof(Vec3) +
+           mesh_.uvs.capacity() * sizeof(Vec2) +
            mesh_.triangles.capacity() * (sizeof(glm::uvec3) + 100);
 }
 

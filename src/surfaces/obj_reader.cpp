@@ -36,9 +36,12 @@ class ObjLines : public std::streambuf {
     {
         TextRow row(file_.path(), file_.line_number(), line_);
         std::string_view token;
-        if (!row.next(token) || (token != "v" && token != "vn")) return;
-        for (int i = 0; i < 3; ++i) {
-            if (!row.next(token)) row.fail("three numbers are needed");
+        if (!row.next(token) || (token != "v" && token != "vn" && token != "vt")) return;
+        const int count = token == "vt" ? 2 : 3;
+        for (int i = 0; i < count; ++i) {
+            if (!row.next(token)) {
+                row.fail(count == 2 ? "two numbers are needed" : "three numbers are needed");
+            }
             (void)row.number(token);
         }
     }
@@ -47,13 +50,15 @@ class ObjLines : public std::streambuf {
     std::string line_;
 };
 
-/// Position and normal that one corner of a face names; -1: no normal.
-using Corner = std::pair<int64_t, int64_t>;
+/// Position, normal and texture coordinates that one corner of a face names; -1: none.
+using Corner = std::tuple<int64_t, int64_t, int64_t>;
 
-/// A mesh being read. OBJ numbers positions and normals apart; each pair that occurs is a vertex.
+/// A mesh being read. OBJ numbers positions, normals and texture coordinates apart; each
+/// combination that occurs is a vertex.
 struct ObjBuild {
     const InputFile& file;
     std::vector<Vec3> positions, normals;
+    std::vector<Vec2> uvs;
     std::map<Corner, uint32_t> vertex_of;
     std::vector<uint32_t> polygon;
     Mesh mesh;
@@ -77,11 +82,15 @@ struct ObjBuild {
             const int64_t n = corner.normal_index == 0
                                   ? -1
                                   : resolve(corner.normal_index, normals.size(), "normal");
+            const int64_t t = corner.texcoord_index == 0
+                                  ? -1
+                                  : resolve(corner.texcoord_index, uvs.size(), "texture point");
             const auto next = static_cast<uint32_t>(mesh.positions.size());
-            const auto [entry, is_new] = vertex_of.emplace(Corner(p, n), next);
+            const auto [entry, is_new] = vertex_of.emplace(Corner(p, n, t), next);
             if (is_new) {
                 mesh.positions.push_back(positions[static_cast<size_t>(p)]);
                 mesh.normals.push_back(n < 0 ? Vec3(0.0f) : normals[static_cast<size_t>(n)]);
+                mesh.uvs.push_back(t < 0 ? Vec2(0.0f) : uvs[static_cast<size_t>(t)]);
             }
             polygon.push_back(entry->second);
         }
@@ -103,13 +112,16 @@ Mesh read_obj(const std::string& path)
     std::istream stream(&lines);
     stream.exceptions(std::ios::badbit);  // hands on what ObjLines throws
 
-    ObjBuild build{file, {}, {}, {}, {}, {}};
+    ObjBuild build{file, {}, {}, {}, {}, {}, {}};
     tinyobj::callback_t on;
     on.vertex_cb = [](void* user, float x, float y, float z, float) {
         build_of(user).positions.emplace_back(x, y, z);
     };
     on.normal_cb = [](void* user, float x, float y, float z) {
         build_of(user).normals.emplace_back(x, y, z);
+    };
+    on.texcoord_cb = [](void* user, float u, float v, float) {
+        build_of(user).uvs.emplace_back(u, v);
     };
     on.index_cb = [](void* user, tinyobj::index_t* corners, int count) {
         build_of(user).add_face({corners, static_cast<size_t>(count)});
@@ -119,6 +131,7 @@ Mesh read_obj(const std::string& path)
         throw Error(ExitCode::Input, fmt::format("{}: {}", path, printable(error)));
     }
     if (build.normals.empty()) build.mesh.normals.clear();
+    if (build.uvs.empty()) build.mesh.uvs.clear();
     return std::move(build.mesh);
 }
 

@@ -1,30 +1,60 @@
+#include <optional>
+
 #include "particles/ply_rows.h"
 #include "surfaces/load_mesh.h"
 
 namespace mote {
 namespace {
 
-/// Where a vertex property goes: component 0 to 2 of the position, 3 to 5 of the normal; -1:
-/// nowhere.
+/// Groups of properties that go together: all of a group or none of it.
+struct Group {
+    int first;  ///< place among a vertex' values
+    std::vector<const char*> names;
+};
+constexpr int value_count = 8;
+constexpr int first_normal = 3;
+constexpr int first_uv = 6;
+
+const std::vector<Group>& groups()
+{
+    static const std::vector<Group> list = {{0, {"x", "y", "z"}},
+                                            {first_normal, {"nx", "ny", "nz"}},
+                                            {first_uv, {"s", "t"}},
+                                            {first_uv, {"u", "v"}},
+                                            {first_uv, {"texture_u", "texture_v"}}};
+    return list;
+}
+
+/// The property of this name that is one number.
+std::optional<size_t> find_number(const PlyElement& element, std::string_view name)
+{
+    for (size_t i = 0; i < element.properties.size(); ++i) {
+        const PlyProperty& property = element.properties[i];
+        if (!property.list_count && property.name == name) return i;
+    }
+    return std::nullopt;
+}
+
+/// Where each property goes among a vertex' values; -1: nowhere.
 std::vector<int> vertex_targets(const std::string& path, const PlyElement& element)
 {
-    static constexpr const char* names[] = {"x", "y", "z", "nx", "ny", "nz"};
     std::vector<int> targets(element.properties.size(), -1);
-    bool found[6] = {};
-    for (size_t i = 0; i < targets.size(); ++i) {
-        const PlyProperty& property = element.properties[i];
-        for (int c = 0; c < 6; ++c) {
-            if (property.list_count || property.name != names[c]) continue;
-            targets[i] = c;
-            found[c] = true;
+    bool is_filled[value_count] = {};
+    for (const Group& group : groups()) {
+        std::vector<size_t> found;
+        for (const char* name : group.names) {
+            if (const auto property = find_number(element, name)) found.push_back(*property);
+        }
+        if (found.size() < group.names.size() || is_filled[group.first]) continue;
+        is_filled[group.first] = true;
+        for (size_t c = 0; c < found.size(); ++c) {
+            targets[found[c]] = group.first + static_cast<int>(c);
         }
     }
-    if (!found[0] || !found[1] || !found[2]) {
+    if (!is_filled[0]) {
         throw Error(ExitCode::Input,
                     fmt::format("{}: element \"vertex\" needs the properties x, y and z", path));
     }
-    if (found[3] && found[4] && found[5]) return targets;
-    for (int& target : targets) target = target < 3 ? target : -1;
     return targets;
 }
 
@@ -53,14 +83,19 @@ struct Reader {
 void Reader::read_vertices(const PlyElement& element)
 {
     const std::vector<int> targets = vertex_targets(file.path(), element);
-    const bool has_normals = std::find(targets.begin(), targets.end(), 3) != targets.end();
-    float values[6] = {};
+    const auto has = [&](int value) {
+        return std::find(targets.begin(), targets.end(), value) != targets.end();
+    };
+    const bool has_normals = has(first_normal);
+    const bool has_uvs = has(first_uv);
+    float values[value_count] = {};
     const auto store = [&](size_t property, double value) {
         if (targets[property] >= 0) values[targets[property]] = static_cast<float>(value);
     };
     const auto finish = [&] {
         mesh.positions.emplace_back(values[0], values[1], values[2]);
         if (has_normals) mesh.normals.emplace_back(values[3], values[4], values[5]);
+        if (has_uvs) mesh.uvs.emplace_back(values[6], values[7]);
     };
     if (format == PlyFormat::Ascii) {
         for_each_ply_line(file, element, [&](uint64_t, TextRow& line) {

@@ -2,6 +2,8 @@
 
 #include <embree3/rtcore.h>
 
+#include "surfaces/cutout.h"
+
 namespace mote {
 namespace {
 
@@ -61,7 +63,49 @@ Vec3 shading_normal(const Mesh& mesh, const InstanceFrame& frame, const SurfaceH
     return glm::dot(ns, ng) < 0.0f ? -ns : ns;
 }
 
+/// Directions on the surface along which u and v of the texture grow, in object space [m]; empty
+/// where the coordinates span no area.
+std::optional<std::pair<Vec3d, Vec3d>> texture_axes(const Mesh& mesh, size_t index,
+                                                    const ObjectTriangle& triangle)
+{
+    const glm::uvec3 t = mesh.triangles[index];
+    const glm::dvec2 d1(mesh.uvs[t.y] - mesh.uvs[t.x]);
+    const glm::dvec2 d2(mesh.uvs[t.z] - mesh.uvs[t.x]);
+    const double determinant = d1.x * d2.y - d1.y * d2.x;
+    if (determinant == 0.0 || !std::isfinite(1.0 / determinant)) return std::nullopt;
+    return std::pair((d2.y * triangle.e1 - d1.y * triangle.e2) / determinant,
+                     (d1.x * triangle.e2 - d2.x * triangle.e1) / determinant);
+}
+
+/// The shading normal turned as a normal map says; `ns` where that would leave the side of ng.
+Vec3 mapped_normal(Vec3 ns, Vec3 ng, const std::pair<Vec3d, Vec3d>& axes,
+                   const InstanceFrame& frame, Vec3 picture, float strength)
+{
+    const Vec3d n(ns);
+    const Vec3d along_u = frame.linear * axes.first;
+    const Vec3d tangent = along_u - n * glm::dot(n, along_u);
+    const double length = glm::length(tangent);
+    if (!(length > 0.0)) return ns;
+    Vec3d other = glm::cross(n, tangent / length);
+    if (glm::dot(other, frame.linear * axes.second) < 0.0) other = -other;  // mirrored coordinates
+    const Vec3d map = 2.0 * Vec3d(picture) - 1.0;
+    const Vec3d turned =
+        static_cast<double>(strength) * (map.x * tangent / length + map.y * other) +
+        std::max(map.z, 0.0) * n;
+    const double size = glm::length(turned);
+    if (!(size > 1e-6)) return ns;
+    const Vec3 out(turned / size);
+    return glm::dot(out, ng) > 0.0f ? out : ns;
+}
+
 }  // namespace
+
+void set_textures(Surfaces& surfaces, std::vector<MaterialTextures> textures)
+{
+    surfaces.textures = std::move(textures);
+    surfaces.has_cuts = std::any_of(surfaces.textures.begin(), surfaces.textures.end(),
+                                    [](const MaterialTextures& t) { return t.is_cut(); });
+}
 
 std::optional<SurfaceHit> intersect(const Surfaces& surfaces, const Ray& ray, Interval range)
 {
@@ -69,9 +113,8 @@ std::optional<SurfaceHit> intersect(const Surfaces& surfaces, const Ray& ray, In
     query.ray = make_ray(ray, range);
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(surfaces.bvh->embree(), &context, &query);
+    SurfaceQuery context(surfaces);
+    rtcIntersect1(surfaces.bvh->embree(), &context.embree, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
     return SurfaceHit{query.ray.tfar, static_cast<int>(query.hit.instID[0]),
                       static_cast<int>(query.hit.primID), query.hit.u, query.hit.v};
@@ -80,9 +123,8 @@ std::optional<SurfaceHit> intersect(const Surfaces& surfaces, const Ray& ray, In
 bool is_occluded(const Surfaces& surfaces, const Ray& ray, Interval range)
 {
     RTCRay query = make_ray(ray, range);
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded1(surfaces.bvh->embree(), &context, &query);
+    SurfaceQuery context(surfaces);
+    rtcOccluded1(surfaces.bvh->embree(), &context.embree, &query);
     return query.tfar < 0.0f;
 }
 
@@ -103,6 +145,19 @@ SurfaceVertex make_vertex(const Surfaces& surfaces, const SurfaceHit& hit, float
     vertex.ns = shading_normal(mesh, frame, hit, vertex.ng);
     vertex.offset = offset_bound(frame, triangle, p, n_object, n, 1.0 / stretch);
     vertex.material = surfaces.material(hit.object);
+    const MaterialTextures* textures = surfaces.textures_of(hit.object);
+    if (textures && !mesh.uvs.empty()) {
+        const auto index = static_cast<size_t>(hit.triangle);
+        const Vec2 uv = uv_at(mesh, index, hit.u, hit.v);
+        vertex.material = material_at(vertex.material, *textures, uv);
+        if (textures->normal) {
+            if (const auto axes = texture_axes(mesh, index, triangle)) {
+                vertex.ns =
+                    mapped_normal(vertex.ns, vertex.ng, *axes, frame,
+                                  Vec3(textures->normal->at(uv)), textures->normal_strength);
+            }
+        }
+    }
     vertex.object = hit.object;
     vertex.triangle = hit.triangle;
     return vertex;
@@ -118,10 +173,11 @@ WorldTriangle world_triangle(const InstanceFrame& frame, const Mesh& mesh, size_
     const Vec3d a = frame.point(triangle.a);
     Vec3d edge_u = frame.linear * triangle.e1;
     Vec3d edge_v = frame.linear * triangle.e2;
-    if (glm::dot(glm::cross(edge_u, edge_v), n) < 0.0) std::swap(edge_u, edge_v);  // mirrored
+    const bool is_mirrored = glm::dot(glm::cross(edge_u, edge_v), n) < 0.0;
+    if (is_mirrored) std::swap(edge_u, edge_v);
     const Vec3d farthest =
         glm::max(glm::abs(a), glm::max(glm::abs(a + edge_u), glm::abs(a + edge_v)));
-    WorldTriangle out{Vec3(a), Vec3(edge_u), Vec3(edge_v), 0.0f};
+    WorldTriangle out{Vec3(a), Vec3(edge_u), Vec3(edge_v), 0.0f, is_mirrored};
     out.offset = offset_bound(frame, triangle, farthest, n_object, n, 1.0 / stretch);
     return out;
 }

@@ -43,6 +43,37 @@ use_color = true
 
 }  // namespace
 
+TEST(Check, OpensPicturesAndGltfFiles)
+{
+    const TemporaryFolder folder;
+    folder.write("quad.obj", "v 0 0 0\nv 1 0 0\nv 0 2 0\nvt 0 0\nf 1/1 2/1 3/1\n");
+    folder.write("bad.png", "no picture");
+    folder.write("bad.gltf", "{ \"asset\": 1, }");
+    folder.write("skins.gltf", R"({ "asset": { "version": "2.0" },
+      "images": [{ "uri": "gone.png" }] })");
+    folder.write("scene.toml", R"(
+[camera]
+file = "nowhere.glb"
+[[materials]]
+name = "a"
+color_texture = "none.png"
+[[objects]]
+file = "quad.obj"
+material = { color_texture = "bad.png" }
+[[objects]]
+file = "bad.gltf"
+[[objects]]
+file = "skins.gltf"
+)");
+    const Finished check = run_mote(folder.path(), {"check", "scene.toml"});
+    EXPECT_EQ(check.exit_code, 3);
+    for (const char* part : {"nowhere.glb: no such file, used by the camera",
+                             "none.png: no such file, used by material \"a\"", "bad.png",
+                             "bad.gltf:1:15: not valid JSON", "gone.png"}) {
+        EXPECT_TRUE(contains(check.err, part)) << part << " in " << check.err;
+    }
+}
+
 TEST(Check, NamesMissingFilesAndGrids)
 {
     const TemporaryFolder folder;

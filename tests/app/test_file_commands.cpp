@@ -112,6 +112,37 @@ TEST(FileCommands, ASheetIsAPng)
     EXPECT_TRUE(files_below(folder.path()).empty());
 }
 
+TEST(FileCommands, InfoTellsMeshesFromParticles)
+{
+    const std::string garden = std::string(MOTE_SOURCE_DIR) + "/scenes/meshes/garden.gltf";
+    const TemporaryFolder folder;
+    const Finished gltf = run_mote(folder.path(), {"info", garden});
+    EXPECT_EQ(gltf.exit_code, 0) << gltf.err;
+    for (const char* part :
+         {"glTF file, 4 meshes", "448, 261 vertices, normals, texture coordinates",
+          "material \"paper\": metallic_roughness, textures, glows",
+          "material \"leaf\": metallic_roughness, textures, cut out", "camera \"view\"",
+          "animation    0 .. 2 s"}) {
+        EXPECT_TRUE(contains(gltf.out, part)) << part << " in " << gltf.out;
+    }
+    folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n");
+    const Finished obj = run_mote(folder.path(), {"info", "a.obj"});
+    EXPECT_TRUE(contains(obj.out, "a.obj: mesh\n  triangles    1, 3 vertices\n")) << obj.out;
+    const std::string vertices =
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+        "property float z\n";
+    folder.write("mesh.ply", vertices +
+                                 "element face 1\nproperty list uchar int vertex_index\n"
+                                 "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+    folder.write("dust.ply", vertices + "end_header\n0 0 0\n1 0 0\n0 1 0\n");
+    EXPECT_TRUE(contains(run_mote(folder.path(), {"info", "mesh.ply"}).out, "mesh.ply: mesh"));
+    EXPECT_TRUE(contains(run_mote(folder.path(), {"info", "dust.ply"}).out, "particle file"));
+    folder.write("bad.glb", "glTF");
+    const Finished bad = run_mote(folder.path(), {"info", "bad.glb"});
+    EXPECT_EQ(bad.exit_code, 3);
+    EXPECT_TRUE(contains(bad.err, "bad.glb: truncated")) << bad.err;
+}
+
 TEST(FileCommands, InfoRefusesOtherKindsOfFiles)
 {
     const TemporaryFolder folder;

@@ -151,6 +151,60 @@ TEST(Light, PointLightFollowsTheInverseSquareLaw)
     EXPECT_FALSE(sample_light(light, Vec3(0.0f, 2.0f, 0.0f), Vec2(0.5f)));
 }
 
+/// Share of a spot's intensity at an angle from its axis: the definition, a smoothstep in the
+/// cosine.
+double falloff_at(double cosine, double inner, double outer)
+{
+    const double t = std::clamp((cosine - outer) / (inner - outer), 0.0, 1.0);
+    return t * t * (3.0 - 2.0 * t);
+}
+
+TEST(Light, SpotsFadeFromTheInnerToTheOuterCone)
+{
+    const Vec3 axis = glm::normalize(Vec3(1.0f, -2.0f, 0.5f));
+    const SpotLight spot{Vec3(0.3f, 1.0f, -0.2f), axis, Spectrum(8.0f, 4.0f, 2.0f), 0.9f, 0.6f};
+    const Mat3 frame = make_frame(axis);
+    for (const float cosine : {1.0f, 0.95f, 0.89f, 0.75f, 0.61f, 0.59f, 0.0f, -1.0f}) {
+        const float sine = std::sqrt(1.0f - cosine * cosine);
+        const Vec3 d = frame * Vec3(0.6f * sine, 0.8f * sine, cosine);
+        const auto sample = sample_light(spot, spot.position + 2.0f * d, Vec2(0.5f));
+        const double exact = 2.0 * falloff_at(static_cast<double>(cosine), 0.9, 0.6);
+        EXPECT_NEAR(sample ? sample->Li.x : 0.0f, exact, 2e-5) << cosine;
+        if (!sample) continue;
+        EXPECT_TRUE(sample->is_delta);
+        EXPECT_NEAR(sample->distance, 2.0f, 1e-6f);
+        EXPECT_LT(glm::length(sample->wi + d), 1e-6f);
+    }
+    EXPECT_FALSE(sample_light(spot, spot.position, Vec2(0.5f)));
+    EXPECT_FALSE(hit_light(spot, Vec3(0.0f), Vec3(1.0f, 0.0f, 0.0f)));
+    EXPECT_EQ(light_pdf(spot, Vec3(0.0f), Vec3(1.0f, 0.0f, 0.0f)), 0.0f);
+    // Sharp edges are no division by zero.
+    SpotLight sharp = spot;
+    sharp.cos_inner = sharp.cos_outer;
+    EXPECT_FLOAT_EQ(sample_light(sharp, sharp.position + axis, Vec2(0.5f))->Li.y, 4.0f);
+}
+
+TEST(Light, SpotPowerIsTheIntegralOfItsIntensity)
+{
+    for (const auto& [inner, outer] :
+         {std::pair(0.9, 0.6), std::pair(0.999, 0.99), std::pair(0.2, -0.5), std::pair(0.5, 0.5)}) {
+        double sum = 0.0;
+        constexpr int steps = 200'000;
+        for (int i = 0; i < steps; ++i) {
+            const double cosine = -1.0 + 2.0 * (i + 0.5) / steps;
+            sum += inner > outer ? falloff_at(cosine, inner, outer) : (cosine >= outer ? 1.0 : 0.0);
+        }
+        const double exact = 2.0 * std::numbers::pi * 3.0 * sum * 2.0 / steps;
+        SpotLight spot;
+        spot.intensity = Spectrum(3.0f);
+        spot.cos_inner = static_cast<float>(inner);
+        spot.cos_outer = static_cast<float>(outer);
+        EXPECT_NEAR(light_power(spot, 1.0f), exact, 1e-4 * exact);
+        EXPECT_FLOAT_EQ(brightest_power(spot, 1.0f), 12.0f * pi);
+    }
+    EXPECT_EQ(brightest_power(SphereLight{}, 1.0f), light_power(SphereLight{}, 1.0f));
+}
+
 TEST(Light, OneSidedQuadShinesWhereItsNormalPoints)
 {
     // cross(u, v) = -y.

@@ -24,12 +24,20 @@ Scene sphere_scene(Vec3 light, float g)
     return scene;
 }
 
+/// A point light is a spot without an edge.
+SpotLight as_spot(const Light& light)
+{
+    if (const auto* spot = std::get_if<SpotLight>(&light)) return *spot;
+    const auto& point = std::get<PointLight>(light);
+    return {point.position, Vec3(0.0f, -1.0f, 0.0f), point.intensity, -2.0f, -3.0f};
+}
+
 /// The integral above by the midpoint rule on the grid; `depth` gives optical depths.
 template <class Sigma, class Depth>
 double quadrature(const Scene& scene, const Ray& ray, double t0, double t1, int steps,
                   Sigma&& sigma_t, Depth&& depth)
 {
-    const auto& light = std::get<PointLight>(scene.lights[0]);
+    const SpotLight light = as_spot(scene.lights[0]);
     const Phase& phase = scene.media.volumes[0].phase;
     double sum = 0.0;
     for (int i = 0; i < steps; ++i) {
@@ -41,8 +49,14 @@ double quadrature(const Scene& scene, const Ray& ray, double t0, double t1, int 
         const auto distance2 = static_cast<double>(glm::dot(to_light, to_light));
         const auto scattering =
             static_cast<double>(eval_phase(phase, -ray.d, glm::normalize(to_light)));
+        const double cosine =
+            static_cast<double>(-glm::dot(light.direction, glm::normalize(to_light)));
+        const double share = std::clamp((cosine - static_cast<double>(light.cos_outer)) /
+                                            static_cast<double>(light.cos_inner - light.cos_outer),
+                                        0.0, 1.0);
+        const double falloff = share * share * (3.0 - 2.0 * share);
         const double tau = depth(ray.at(static_cast<float>(t0)), x) + depth(x, light.position);
-        sum += std::exp(-tau) * density * scattering / distance2;
+        sum += std::exp(-tau) * density * scattering * falloff / distance2;
     }
     return sum * (t1 - t0) / steps * static_cast<double>(albedo * light.intensity.x);
 }
@@ -99,6 +113,52 @@ TEST(SingleScatteringStat, APointLightInAHomogeneousSphereMatchesQuadrature)
             }
         }
     }
+}
+
+/// A spot that lights part of what the ray `through` sees.
+Scene spot_scene()
+{
+    Scene scene = sphere_scene(Vec3(0.0f), 0.3f);
+    const Vec3 position(-0.6f, 1.6f, 0.4f);
+    scene.lights = {SpotLight{position, glm::normalize(Vec3(-0.1f, 0.1f, 0.0f) - position),
+                              Spectrum(3.0f), 0.98f, 0.9f}};
+    return scene;
+}
+
+TEST(SingleScatteringStat, ASpotInAHomogeneousSphereMatchesQuadrature)
+{
+    // As above, and beside a second, dim light, so that the light is chosen.
+    for (const bool is_chosen : {false, true}) {
+        Scene scene = spot_scene();
+        const double exact = grid_quadrature(scene, through, 1.8, 4.2);
+        if (is_chosen) {
+            scene.lights.push_back(PointLight{Vec3(0.0f, -1.5f, 0.0f), Spectrum(1e-6f)});
+        }
+        for (const auto sampler :
+             {LightSamplerKind::Power, LightSamplerKind::PowerDistance, LightSamplerKind::Tree}) {
+            for (const bool equiangular : {false, true}) {
+                PathTracerParams params;
+                params.light_sampler = sampler;
+                params.equiangular = equiangular;
+                const RunningStats stats = test::trace(scene, params, through, 100'000, 1);
+                EXPECT_LT(std::abs(stats.mean - exact), 5.0 * stats.standard_error() + 3e-4 * exact)
+                    << stats.mean << " " << exact;
+                EXPECT_LT(stats.standard_error(), 0.02 * exact);
+            }
+        }
+    }
+}
+
+TEST(SingleScatteringStat, ASpotOfAnotherAngleIsRejected)
+{
+    // Negative control: its cone is 1.4 degrees too narrow.
+    Scene scene = spot_scene();
+    const double exact = grid_quadrature(scene, through, 1.8, 4.2);
+    std::get<SpotLight>(scene.lights[0]).cos_outer = 0.91f;
+    PathTracerParams params;
+    params.equiangular = true;
+    const RunningStats stats = test::trace(scene, params, through, 100'000, 1);
+    EXPECT_GT(std::abs(stats.mean - exact), 5.0 * stats.standard_error() + 3e-4 * exact);
 }
 
 TEST(SingleScattering, TheGridSphereIsNearTheIdealSphere)

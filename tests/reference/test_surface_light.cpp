@@ -41,12 +41,17 @@ TEST(SurfaceLightStat, LampsOverADiffuseFloor)
     const double d2 = 0.25 + 4.0 + 1.0;
     const Vec3 p(0.5f, 2.0f, -1.0f);
     const double cosine = 2.0 / std::sqrt(d2);
+    const Vec3 axis = glm::normalize(Vec3(-0.3f, -1.0f, -0.1f));
+    const float to_floor = glm::dot(axis, glm::normalize(-p));
     const struct {
         Light light;
         double irradiance;
     } cases[] = {
         {PointLight{p, Spectrum(3.0f)}, 3.0 * cosine / d2},
         {DistantLight{glm::normalize(p), Spectrum(3.0f)}, 3.0 * cosine},
+        // Half way between the cones: a half.
+        {SpotLight{p, axis, Spectrum(3.0f), to_floor + 0.1f, to_floor - 0.1f},
+         0.5 * 3.0 * cosine / d2},
         {SphereLight{p, 0.5f, Spectrum(2.0f)}, std::numbers::pi * 2.0 * 0.25 / d2 * cosine},
     };
     for (const auto& c : cases) {

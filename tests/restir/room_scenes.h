@@ -83,12 +83,54 @@ inline Scene courtyard(bool sky_image)
     return scene;
 }
 
+/// A floor with pictures of colour and roughness, a leaf cut out of a quad before a lamp, a glowing
+/// panel with a picture and holes, mirrored, a spot, and smoke.
+inline Scene pictures()
+{
+    Scene scene = lit_clumps(2.0f);
+    scene.lights = {SpotLight{{1.2f, 1.3f, 0.4f},
+                              glm::normalize(Vec3(-1.3f, -1.6f, -0.4f)),
+                              {4.0f, 5.0f, 6.0f},
+                              0.97f,
+                              0.9f},
+                    SphereLight{{0.2f, 1.1f, 0.6f}, 0.15f, Spectrum(6.0f)}};
+    const auto picture = [](int size, auto&& texel) {
+        std::vector<float> values;
+        for (int i = 0; i < size * size; ++i) {
+            const Rgba rgba = texel(i % size, i / size);
+            for (int c = 0; c < 4; ++c) values.push_back(rgba[c]);
+        }
+        return std::make_shared<const Texture>(size, size, values);
+    };
+    const auto checks = picture(4, [](int x, int y) {
+        return (x + y) % 2 == 0 ? Rgba(0.9f, 0.5f, 0.2f, 1.0f) : Rgba(0.1f, 0.9f, 0.8f, 0.0f);
+    });
+    const auto sparks = picture(6, [](int x, int y) {
+        return Rgba(Vec3((x * 5 + y * 3) % 7 == 0 ? 20.0f : 0.5f), (x + 2 * y) % 5 < 3);
+    });
+    Thing floor{quad_mesh({-4.0f, -0.9f, -4.0f}, {0.0f, 0.0f, 8.0f}, {8.0f, 0.0f, 0.0f}),
+                glossy(Spectrum(0.8f), 0.3f, 0.8f)};
+    floor.textures.color = floor.textures.roughness = floor.textures.metallic = checks;
+    Thing leaf{quad_mesh({-0.3f, 0.6f, 0.1f}, {1.2f, 0.0f, 0.2f}, {0.0f, 0.1f, 1.0f}),
+               diffuse({0.4f, 0.7f, 0.3f})};
+    leaf.textures.color = checks;
+    leaf.textures.alpha_cutoff = 0.5f;
+    Thing panel{quad_mesh({0.2f, -0.5f, -1.2f}, {1.1f, 0.0f, 0.3f}, {0.0f, 1.4f, 0.0f}),
+                diffuse(Spectrum(0.2f), {1.0f, 0.7f, 0.4f})};
+    panel.textures.emission = panel.textures.color = sparks;
+    panel.textures.alpha_cutoff = 0.4f;
+    panel.trs.scale.x = -1.0;
+    add_surfaces(scene, {floor, leaf, panel});
+    return scene;
+}
+
 inline std::vector<TestScene> room_scenes()
 {
     TestScene deep{"smoke in a room, three events", room(), 3};
     return {{"smoke in a room", room()},
             {"courtyard under an even sky", courtyard(false)},
             {"courtyard under a sky image", courtyard(true)},
+            {"pictures and cut-outs", pictures()},
             deep};
 }
 

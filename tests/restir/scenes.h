@@ -246,6 +246,21 @@ inline TestScene spheres_in_smoke()
     return out;
 }
 
+/// A narrow spot with a soft edge, a wide one with a sharp edge and one that misses, and a point.
+inline TestScene spots_in_smoke()
+{
+    TestScene out{"spots in smoke", lit_clumps(4.0f)};
+    const auto spot = [](Vec3 position, Vec3 at, Spectrum intensity, float inner, float outer) {
+        return SpotLight{position, glm::normalize(at - position), intensity, inner, outer};
+    };
+    out.scene.lights = {
+        spot({-0.9f, 1.0f, 0.8f}, {0.1f, -0.1f, 0.0f}, {4.0f, 2.0f, 1.0f}, 0.99f, 0.94f),
+        spot({0.3f, 0.2f, 0.1f}, {0.3f, -1.0f, 0.4f}, {0.1f, 0.3f, 0.6f}, 0.1f, 0.1f),
+        spot({0.9f, 0.9f, 0.9f}, {4.0f, 2.0f, 3.0f}, Spectrum(9.0f), 0.9f, 0.8f),
+        PointLight{{-0.9f, -0.9f, 0.6f}, Spectrum(0.2f)}};
+    return out;
+}
+
 /// One quad cuts through the smoke, one lies beside it and shines away from part of it.
 inline TestScene quads()
 {
@@ -326,12 +341,25 @@ inline TestScene everything_at_once()
 
 inline std::vector<TestScene> all_scenes()
 {
-    return {sun_and_sky(0.1f), sun_and_sky(6.0f),    sun_and_sky(100.0f),
-            two_suns(),        sky_with_a_sun(),     camera_inside(),
-            overlapping(),     colour_grid(),        anisotropic(-0.9f),
-            anisotropic(0.0f), anisotropic(0.95f),   spheres_in_smoke(),
-            quads(),           flame_in_smoke(),     moving_through_a_lens(),
-            many_lamps(),      everything_at_once(), suns_in_the_image()};
+    return {sun_and_sky(0.1f),
+            sun_and_sky(6.0f),
+            sun_and_sky(100.0f),
+            two_suns(),
+            sky_with_a_sun(),
+            camera_inside(),
+            overlapping(),
+            colour_grid(),
+            anisotropic(-0.9f),
+            anisotropic(0.0f),
+            anisotropic(0.95f),
+            spheres_in_smoke(),
+            quads(),
+            spots_in_smoke(),
+            flame_in_smoke(),
+            moving_through_a_lens(),
+            many_lamps(),
+            everything_at_once(),
+            suns_in_the_image()};
 }
 
 }  // namespace mote::test

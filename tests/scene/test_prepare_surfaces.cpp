@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "scene/prepare.h"
+#include "support/expect_error.h"
+#include "support/png_bytes.h"
 #include "support/scene_files.h"
 #include "surfaces/mesh_bvh.h"
 #include "surfaces/meshes.h"
@@ -120,6 +122,60 @@ TEST(PrepareSurfaces, OnlyWhatMovesIsBuiltAgain)
     EXPECT_EQ(fourth.meshes_built, 1);
     EXPECT_EQ(fourth.meshes_reused, 1);
     EXPECT_EQ(fourth.instance_trees_built, 1);
+}
+
+TEST(PrepareSurfaces, PicturesOfMaterials)
+{
+    const Folder f(R"(
+[[materials]]
+name = "leaf"
+color_texture = "leaf.png"
+normal_texture = "leaf.png"
+normal_strength = 0.5
+alpha_cutoff = 0.25
+[[objects]]
+file = "quad.obj"
+material = "leaf"
+[[objects]]
+file = "quad.obj"
+material = { emission = 3, emission_texture = "leaf.png" }
+)");
+    f.folder.write("leaf.png", test::text_of(test::rgba_png));
+    f.folder.write("quad.obj", test::obj_text(test::quad_mesh(Vec3(0.0f), Vec3(1.0f, 0.0f, 0.0f),
+                                                              Vec3(0.0f, 1.0f, 0.0f))));
+    SceneCache cache;
+    PrepareStats stats;
+    const Scene scene = prepare(f.description, 1, cache, stats);
+    ASSERT_TRUE(scene.surfaces);
+    EXPECT_TRUE(scene.surfaces->has_cuts);
+    const MaterialTextures* leaf = scene.surfaces->textures_of(0);
+    ASSERT_NE(leaf, nullptr);
+    EXPECT_EQ(leaf->alpha_cutoff, 0.25f);
+    EXPECT_EQ(leaf->normal_strength, 0.5f);
+    // 20 of 255 by the sRGB curve as a colour, linear as data; the texel at the lower right.
+    EXPECT_NEAR(leaf->color->at({0.75f, 0.25f}).y, 0.0070f, 1e-4f);
+    EXPECT_FLOAT_EQ(leaf->normal->at({0.75f, 0.25f}).y, 20.0f / 255.0f);
+    const MaterialTextures* lamp = scene.surfaces->textures_of(1);
+    ASSERT_NE(lamp, nullptr);
+    EXPECT_EQ(lamp->emission, leaf->color) << "a file is read once for each role";
+    ASSERT_EQ(scene.lights.size(), 2u);
+    EXPECT_TRUE(std::get<TriangleLight>(scene.lights[0]).texture);
+    EXPECT_EQ(stats.texture_bytes, 32u);
+    PrepareStats again;
+    const Scene later = prepare(f.description, 2, cache, again);
+    EXPECT_EQ(later.surfaces->textures_of(0)->color, leaf->color);
+}
+
+TEST(PrepareSurfaces, MissingPicturesAndCoordinatesAreNamed)
+{
+    const Folder f("[[objects]]\nfile = \"box.obj\"\nmaterial = { color_texture = \"a.png\" }\n");
+    SceneCache cache;
+    PrepareStats stats;
+    expect_error([&] { (void)prepare(f.description, 1, cache, stats); }, ExitCode::Input,
+                 {"a.png", "cannot be read"});
+    f.folder.write("a.png", test::text_of(test::rgba_png));
+    expect_error([&] { (void)prepare(f.description, 1, cache, stats); }, ExitCode::Input,
+                 {"box.obj", "no texture coordinates"});
 }
 
 TEST(PrepareSurfaces, BrokenMeshesAreNamed)

@@ -65,7 +65,7 @@ TEST(SceneDocuments, SchemaKnowsEveryTable)
     EXPECT_EQ(particles["properties"]["voxel_size"]["exclusiveMinimum"], 0);
     EXPECT_EQ(particles["properties"]["voxel_size"]["default"], 0.02);
     const auto& lights = schema["properties"]["lights"]["items"]["properties"];
-    EXPECT_EQ(lights["type"]["enum"].size(), 5u);
+    EXPECT_EQ(lights["type"]["enum"].size(), 6u);
 }
 
 }  // namespace

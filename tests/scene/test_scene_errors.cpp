@@ -124,6 +124,15 @@ TEST(SceneErrors, NamePlaceKeyAndRemedy)
         {"[[materials]]\ncolor = 2",
          "scene.toml:1:1: error: a material needs a \"name\" to be used by\n"
          "scene.toml:2:9: error: \"color\" in [materials] is 2, allowed: 0 to 1"},
+        {"[[materials]]\nname = \"a\"\nemission_texture = \"a.png\"\nalpha_cutoff = 0.5",
+         "scene.toml:1:1: error: \"emission_texture\" multiplies \"emission\", which is 0; set "
+         "it\nscene.toml:1:1: error: \"alpha_cutoff\" is about the alpha of \"color_texture\"; "
+         "name one"},
+        {"[camera]\nfile = \"a.glb\"\nfov = 30",
+         "scene.toml:3:7: error: \"fov\" and \"file\" of the camera exclude each other"},
+        {"[[lights]]\ntype = \"spot\"\ncone_angle = 190",
+         "scene.toml:3:14: error: \"cone_angle\" in [lights] is 190, allowed: above 0, at most "
+         "180 [degrees]"},
         {"first_frame = 5\nlast_frame = 4",
          "scene.toml:2:14: error: \"last_frame\" is 4, before \"first_frame\" 5"},
         {"[render]\nwidth = 65536\nheight = 65536",

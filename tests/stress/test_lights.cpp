@@ -17,7 +17,9 @@ std::vector<Light> each_kind(float power)
         SphereLight{{0.2f, 0.1f, 0.1f}, 0.1f, light},
         DistantLight{glm::normalize(Vec3(0.7f, 0.6f, 0.2f)), light},
         QuadLight{{-0.5f, -0.2f, -0.4f}, {1.0f, 0.1f, 0.0f}, {0.0f, 0.2f, 0.9f}, light, true},
-        TriangleLight{{-0.5f, -0.2f, -0.4f}, {1.0f, 0.1f, 0.0f}, {0.0f, 0.2f, 0.9f}, light, true}};
+        TriangleLight{{-0.5f, -0.2f, -0.4f}, {1.0f, 0.1f, 0.0f}, {0.0f, 0.2f, 0.9f}, light, true},
+        SpotLight{
+            {0.9f, 0.8f, 0.6f}, glm::normalize(Vec3(-0.9f, -0.8f, -0.5f)), light, 0.9f, 0.8f}};
 }
 
 Scene lit_by(const Light& light, float density = 4.0f)

@@ -40,11 +40,13 @@ inline Mesh box_mesh(Vec3 lo, Vec3 hi, bool inwards = false, int n = 1)
     return mesh;
 }
 
-/// Parallelogram corner, corner + u, corner + u + v, corner + v; front along cross(u, v).
+/// Parallelogram corner, corner + u, corner + u + v, corner + v; front along cross(u, v). Texture
+/// coordinates run from 0 to 1 along the edges.
 inline Mesh quad_mesh(Vec3 corner, Vec3 u, Vec3 v)
 {
     Mesh mesh;
     mesh.positions = {corner, corner + u, corner + u + v, corner + v};
+    mesh.uvs = {Vec2(0.0f), Vec2(1.0f, 0.0f), Vec2(1.0f), Vec2(0.0f, 1.0f)};
     const uint32_t corners[] = {0, 1, 2, 3};
     add_polygon(mesh, corners);
     finish_mesh(mesh, "quad");
@@ -89,11 +91,13 @@ inline std::string obj_text(const Mesh& mesh)
     for (const Vec3& n : mesh.normals) {
         out << "vn " << n.x << " " << n.y << " " << n.z << "\n";
     }
+    for (const Vec2& uv : mesh.uvs) out << "vt " << uv.x << " " << uv.y << "\n";
     for (const glm::uvec3& t : mesh.triangles) {
         out << "f";
         for (int c = 0; c < 3; ++c) {
             out << " " << t[c] + 1;
-            if (!mesh.normals.empty()) out << "//" << t[c] + 1;
+            if (!mesh.uvs.empty()) out << "/" << t[c] + 1;
+            if (!mesh.normals.empty()) out << (mesh.uvs.empty() ? "//" : "/") << t[c] + 1;
         }
         out << "\n";
     }

@@ -75,6 +75,34 @@ TEST(LoadMesh, BigEndianPlyWithOtherElementsAndProperties)
     EXPECT_EQ(area_normal(mesh, 0), Vec3(0.0f, 0.0f, 1.0f));
 }
 
+TEST(LoadMesh, TextureCoordinatesOfBothFormats)
+{
+    const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    const Mesh obj =
+        load("a.obj", corners + "vt 0.25 0.5\nvt 2 -1 7\nf 1/1 2/2 3/1\nf 1/2 2/2 3\n");
+    ASSERT_EQ(obj.uvs.size(), obj.positions.size());
+    EXPECT_EQ(uv_at(obj, 0, 0.0f, 0.0f), Vec2(0.25f, 0.5f));
+    EXPECT_EQ(uv_at(obj, 0, 1.0f, 0.0f), Vec2(2.0f, -1.0f));
+    EXPECT_EQ(uv_at(obj, 1, 0.0f, 0.0f), Vec2(2.0f, -1.0f));  // a seam: another vertex
+    EXPECT_EQ(uv_at(obj, 1, 0.0f, 1.0f), Vec2(0.0f));
+    for (const char* names : {"s t", "u v", "texture_u texture_v"}) {
+        const std::string text = names;
+        const size_t gap = text.find(' ');
+        const Mesh ply = load(
+            "a.ply",
+            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+            "property float " +
+                text.substr(0, gap) + "\nproperty float z\nproperty float " + text.substr(gap + 1) +
+                "\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                "0 0 0.5 0 0.25\n1 0 nan 0 1\n0 1 -3 0 2\n3 0 1 2\n");
+        ASSERT_EQ(ply.uvs.size(), 3u) << names;
+        EXPECT_EQ(ply.uvs[0], Vec2(0.5f, 0.25f));
+        EXPECT_EQ(ply.uvs[1], Vec2(0.0f)) << "not finite";
+        EXPECT_EQ(ply.uvs[2], Vec2(-3.0f, 2.0f));
+        EXPECT_EQ(ply.positions[2], Vec3(0.0f, 1.0f, 0.0f));
+    }
+}
+
 TEST(LoadMesh, TrianglesThatCannotBeDrawnAreLeftOut)
 {
     const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1e999 0 0\nv 2 0 0\nvn 0 0 0\n";
@@ -107,10 +135,13 @@ TEST(LoadMesh, ErrorsNameFilePlaceAndReason)
         {"a.obj", corners + "f 1 2 -4\n", "a.obj:4:1: the face names vertex -4"},
         {"a.obj", corners + "f 1//1 2//1 3//1\n", "a.obj:4:1: the face names normal 1"},
         {"a.obj", "v 0 0 0\nv 1 x 0\n", "a.obj:2:5: \"x\" is not a number"},
+        {"a.obj", corners + "vt 0 0\nf 1/2 2/1 3/1\n",
+         "a.obj:5:1: the face names texture point 2, but there are 1"},
+        {"a.obj", "vt 0\n", "a.obj:1:5: two numbers are needed"},
         {"a.obj", "v 0 0\n", "a.obj:1:6: three numbers are needed"},
         {"a.obj", corners + "f 1 1 2\n", "holds no triangle that can be drawn"},
         {"a.obj", "", "holds no triangle"},
-        {"a.fbx", "", "export it as .obj or .ply"},
+        {"a.fbx", "", "export it as .obj, .ply, .gltf or .glb"},
         {"a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n0\n",
          "needs the properties x, y and z"},
         {"a.ply",

@@ -5,7 +5,10 @@
 #include "core/error.h"
 #include "core/sanitizers.h"
 #include "support/damage.h"
+#include "support/png_bytes.h"
 #include "support/temporary_folder.h"
+#include "surfaces/gltf/gltf_scene.h"
+#include "surfaces/gltf_text.h"
 #include "surfaces/load_mesh.h"
 #include "surfaces/meshes.h"
 
@@ -30,6 +33,25 @@ void expect_safe(const Mesh& mesh)
         }
     }
     ASSERT_TRUE(mesh.normals.empty() || mesh.normals.size() == mesh.positions.size());
+    ASSERT_TRUE(mesh.uvs.empty() || mesh.uvs.size() == mesh.positions.size());
+    for (const Vec2& uv : mesh.uvs) ASSERT_TRUE(std::isfinite(uv.x) && std::isfinite(uv.y));
+}
+
+/// The meshes of a file, safe to render.
+std::vector<Mesh> read_any(const std::string& path)
+{
+    std::vector<Mesh> meshes;
+    if (path.ends_with(".gltf") || path.ends_with(".glb")) {
+        GltfScene scene = load_gltf(path);
+        for (GltfPart& part : scene.parts) meshes.push_back(std::move(part.mesh));
+        for (size_t i = 0; i < scene.nodes.size(); ++i) {
+            (void)world_from_node(scene, static_cast<int>(i), 1.5);
+        }
+    } else {
+        meshes.push_back(path.ends_with("obj") ? read_obj(path) : read_ply_mesh(path));
+        (void)finish_mesh(meshes.back(), path);
+    }
+    return meshes;
 }
 
 /// 500 damages of one file, 5000 in the long form.
@@ -42,9 +64,7 @@ void read_damaged(const char* name, const std::string& whole)
     for (uint32_t trial = 0; trial < trials; ++trial) {
         const std::string path = folder.write(name, test::damage(whole, trial));
         try {
-            Mesh mesh = std::string(name).ends_with("obj") ? read_obj(path) : read_ply_mesh(path);
-            (void)finish_mesh(mesh, path);
-            expect_safe(mesh);
+            for (const Mesh& mesh : read_any(path)) expect_safe(mesh);
         } catch (const Error& e) {
             ++refused;
             EXPECT_TRUE(std::string_view(e.what()).starts_with(path)) << e.what();
@@ -78,6 +98,50 @@ TEST(MutatedMeshes, AsciiPly)
 TEST(MutatedMeshes, BinaryPly)
 {
     read_damaged("b.ply", test::ply_bytes(smooth, true));
+}
+
+/// A file with something of everything that is read.
+test::GltfText rich_gltf()
+{
+    test::GltfText text;
+    text.add_mesh(smooth, 0);
+    text.add_mesh(test::quad_mesh(Vec3(0.0f), Vec3(1.0f, 0.0f, 0.0f), Vec3(0.0f, 1.0f, 0.0f)), 0);
+    text.json["nodes"] = {{{"mesh", 0}, {"children", {1, 2}}},
+                          {{"mesh", 1}, {"translation", {1, 2, 3}}},
+                          {{"camera", 0}}};
+    text.json["cameras"] = {
+        {{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}}};
+    text.json["scenes"] = {{{"nodes", {0}}}};
+    text.json["images"] = {
+        {{"uri", "data:image/png;base64," + test::base64(test::text_of(test::rgba_png))}}};
+    text.json["textures"] = {{{"source", 0}}};
+    text.json["materials"] = {
+        {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}},
+         {"alphaMode", "MASK"},
+         {"emissiveFactor", {1, 1, 0}},
+         {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 8}}}}}}};
+    const int times = text.add_floats({1, 2}, "SCALAR", 1);
+    const int moves = text.add_floats({0, 0, 0, 2, 0, 0}, "VEC3", 3);
+    text.json["animations"] = {
+        {{"samplers", {{{"input", times}, {"output", moves}}}},
+         {"channels", {{{"sampler", 0}, {"target", {{"node", 1}, {"path", "translation"}}}}}}}};
+    return text;
+}
+
+TEST(MutatedMeshes, ObjWithTextureCoordinates)
+{
+    read_damaged("t.obj", test::obj_text(test::quad_mesh(Vec3(0.0f), Vec3(1.0f, 0.0f, 0.0f),
+                                                         Vec3(0.0f, 1.0f, 0.0f))));
+}
+
+TEST(MutatedMeshes, Gltf)
+{
+    read_damaged("a.gltf", rich_gltf().gltf());
+}
+
+TEST(MutatedMeshes, Glb)
+{
+    read_damaged("a.glb", rich_gltf().glb());
 }
 
 }  // namespace
