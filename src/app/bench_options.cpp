@@ -55,13 +55,15 @@ void bind_bench(CLI::App& app, BenchOptions& o)
         ->type_name("LIST");
     app.add_option(
            "--modes", o.modes,
-           "still: one frame alone, of many samples; static: one frame after warm-up "
-           "frames; moving: the same in the animation. Default: moving if anything moves, else "
-           "still,static")
+           "still: one frame alone, of many samples, with its error at fewer; static: one frame "
+           "after "
+           "warm-up frames; accumulated: the mean of several; camera: static, but the camera "
+           "travels 1 degree a frame around its focus; moving: the animation. Default: moving if "
+           "anything moves, else still,static")
         ->type_name("LIST");
     app.add_option("--frames", o.frames,
-                   "Frames before the one compared (static, moving), and how often still takes the "
-                   "samples of a frame. Default: 8+8")
+                   "Frames before those compared (but for still); and how often still takes the "
+                   "samples of a frame, and accumulated frames. Default: 8+8")
         ->type_name("W+N");
     app.add_option("--frame", o.frame,
                    "The frame compared. Default: the scene's first after the warm-up")

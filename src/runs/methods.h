@@ -21,11 +21,12 @@ struct SceneTraits {
 
 /// One row of the benchmark: a way to render a scene.
 struct Method {
-    std::string name;       ///< on the command line and in the results
-    std::string doc;        ///< one line
-    bool is_reference;      ///< row of the reference path tracer, by whose best others are judged
-    bool keeps_history;     ///< frames before the one measured change it: warm-up is rendered
-    int samples_per_frame;  ///< 0: as many as take the time of the other rows
+    std::string name;        ///< on the command line and in the results
+    std::string doc;         ///< one line
+    bool is_reference;       ///< row of the reference path tracer, by whose best others are judged
+    bool is_biased = false;  ///< known to be: its error has a floor
+    bool keeps_history;      ///< frames before the one measured change it: warm-up is rendered
+    int samples_per_frame;   ///< 0: as many as take the time of the other rows
     std::function<void(RenderDescription&)> edit;           ///< applied to the scene's settings
     std::function<bool(const SceneTraits&)> is_worthwhile;  ///< measured by default?
 };

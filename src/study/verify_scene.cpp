@@ -180,7 +180,7 @@ int reference_samples(const ShortRuns& tested, const ShortRuns& reference)
 
 int frames_of(const Setup& setup, const Method& method)
 {
-    return method.keeps_history ? static_cast<int>(setup.plan.frames.size()) : 1;
+    return frames_rendered(setup.plan, method.keeps_history);
 }
 
 /// Frames before the one compared: an animation may have fewer than asked for.

@@ -141,12 +141,17 @@ TEST(BenchCommand, QuickMeasuresWritesAndCompares)
     EXPECT_EQ(measured.at("modes").size(), 2u);
     EXPECT_GT(measured.at("reference").at("mean"), 0.0);
     for (const auto& mode : measured.at("modes")) {
+        const bool is_still = mode.at("mode") == "still";
         double best = 0.0;
         for (const auto& row : mode.at("methods")) {
             EXPECT_EQ(row.at("runs").size(), 2u);
             EXPECT_EQ(row.at("non_finite"), 0);
             EXPECT_GT(row.at("figures").at("cpu_us"), 0.0);
             EXPECT_GT(row.at("figures").at("n_var"), 0.0);
+            EXPECT_EQ(row.at("curve").size(), is_still ? 2u : 0u);  // 1 and 4 times the samples
+            EXPECT_EQ(row.at("memory_bytes").at("film"), 32 * 18 * 4 * 4);
+            const auto& work = row.at("work");  // the preview, too, walks its camera rays
+            EXPECT_GT(work.at("lookups").get<double>() + work.at("cells").get<double>(), 0.0);
             const auto& ratio = row.at("figures").at("ratio");
             const bool judges = row.at("is_reference").get<bool>();
             if (judges && ratio.is_number()) best = std::max(best, ratio.get<double>());

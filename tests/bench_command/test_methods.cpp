@@ -48,7 +48,7 @@ TEST(Methods, TheLightsOfTheSceneDecideWhatIsMeasured)
     EXPECT_EQ(many.front(), "path-power");
     // The preview is the closed form of lights at infinity alone.
     EXPECT_EQ(names_of(choose_methods("", {false, false, true})).back(), "restir-preview");
-    EXPECT_EQ(names_of(choose_methods("", {false, true, true})).back(), "restir-textbook");
+    EXPECT_EQ(names_of(choose_methods("", {false, true, true})).back(), "restir-constant-mis");
 }
 
 TEST(Methods, AreChosenByNameAndBeginning)
@@ -78,6 +78,16 @@ TEST(Methods, EditTheSettingsTheyAreNamedFor)
     EXPECT_EQ(render.restir.reuse, ReuseMode::Spatial);
     find_method("path").edit(render);
     EXPECT_EQ(render.estimator, EstimatorKind::Path);
+}
+
+TEST(Methods, AreCalledBiasedWhereTheSettingsAre)
+{
+    for (const Method& method : all_methods()) {
+        RenderDescription render;
+        method.edit(render);
+        const bool is_right = render.estimator == EstimatorKind::Path || is_unbiased(render.restir);
+        EXPECT_EQ(method.is_biased, !is_right) << method.name;
+    }
 }
 
 TEST(Methods, RowsTakeEqualTimes)
@@ -148,10 +158,48 @@ TEST(Modes, AllShowTheSameFrameLast)
     const auto grid = [](const Scene& s) { return s.media.volumes.front().density.get(); };
     EXPECT_EQ(grid(rest.frames.front()), grid(rest.frames.back()));
     EXPECT_NE(grid(moving.frames.front()), grid(moving.frames.back()));
+    const FramePlan mean = plan_frames(scene, BenchMode::Accumulated, 10, counts, cache);
+    EXPECT_EQ(mean.frames.size(), 5u);  // two compared after three
+    EXPECT_EQ(mean.compared, 2);
+    EXPECT_EQ(grid(mean.frames.front()), grid(mean.frames.back()));
+    EXPECT_EQ(frames_rendered(mean, true), 5);
+    EXPECT_EQ(frames_rendered(mean, false), 2);
+    EXPECT_EQ(frames_rendered(rest, false), 1);
     for (const FramePlan* plan : {&still, &rest, &moving}) {
         EXPECT_EQ(plan->frames.back().frame, 10);
         EXPECT_EQ(plan->frames.front().frame, 11 - static_cast<int>(plan->frames.size()));
     }
+}
+
+TEST(Modes, CameraTravelsAroundItsFocusToTheFrameCompared)
+{
+    SceneDescription scene;
+    scene.camera.position = Vec3d(1.0, 2.0, 5.0);
+    scene.camera.look_at = Vec3d(0.0, 1.0, 0.0);
+    ProceduralParams puff;
+    puff.voxel_size = 0.2f;
+    puff.evolve = 1.0f;
+    scene.volumes.emplace_back().procedural = puff;
+    SceneCache cache;
+    const FramePlan plan = plan_frames(scene, BenchMode::Camera, 10, {3, 2}, cache);
+    ASSERT_EQ(plan.frames.size(), 4u);
+    const auto place = [&](size_t i) {
+        return plan.frames[i].camera.world_from_camera.keys.front().translate;
+    };
+    EXPECT_EQ(place(3), scene.camera.position);
+    const double radius = glm::length(scene.camera.position - scene.camera.look_at);
+    for (size_t i = 0; i < 4; ++i) {
+        EXPECT_NEAR(glm::length(place(i) - scene.camera.look_at), radius, 1e-5);  // float focus
+        const std::optional<Vec2> film =
+            project(plan.frames[i].camera, Vec3(scene.camera.look_at), 0.0f);
+        ASSERT_TRUE(film);
+        EXPECT_NEAR(film->x, 0.5f * static_cast<float>(plan.frames[i].camera.width), 1e-2f);
+        EXPECT_EQ(plan.frames[i].media.volumes.front().density,
+                  plan.frames[3].media.volumes.front().density);
+    }
+    // Three steps of one degree at the circle's radius, which here is the distance.
+    EXPECT_NEAR(glm::length(place(0) - place(3)),
+                2.0 * radius * std::sin(0.5 * glm::radians(3.0 * camera_step)), 1e-4);
 }
 
 }  // namespace mote
