@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <iterator>
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 #include "bench/result_changes.h"
 #include "core/error.h"
 #include "core/parallel.h"
+#include "plots/page.h"
 #include "runs/methods.h"
 #include "scene/scene_io.h"
 #include "volumes/walk_isa.h"
@@ -41,6 +43,25 @@ void write_results(const BenchOptions& options, const BenchReport& report)
 {
     if (!options.json.empty()) write_text_file(options.json, bench_json(report));
     if (!options.csv.empty()) write_text_file(options.csv, bench_csv(report));
+    if (!options.html.empty()) write_text_file(options.html, bench_html(report));
+    if (options.svg.empty()) return;
+    const SceneResult& scene = report.scenes.back();
+    for (const ModeResult& mode : scene.modes) {
+        const std::string name = fmt::format(
+            "{}-{}.svg", std::filesystem::path(scene.path).stem().string(), mode_name(mode.mode));
+        write_text_file((std::filesystem::path(options.svg) / name).string(),
+                        svg_file(error_plot(scene, mode)));
+    }
+}
+
+/// Wrong places come to light before anything is measured.
+void require_writable(const BenchOptions& options)
+{
+    for (const std::string* file : {&options.json, &options.csv, &options.html}) {
+        if (!file->empty()) require_writable_folder(*file);
+    }
+    if (options.svg.empty()) return;
+    require_writable_folder((std::filesystem::path(options.svg) / "plot.svg").string());
 }
 
 void measure(const BenchOptions& options)
@@ -55,8 +76,7 @@ void measure(const BenchOptions& options)
         scenes.push_back(load_bench_scene(path, options));
         (void)choose_modes(params.modes, scenes.back());
     }
-    if (!options.json.empty()) require_writable_folder(options.json);
-    if (!options.csv.empty()) require_writable_folder(options.csv);
+    require_writable(options);
 
     const BenchHooks hooks{stop_requested, [](const std::string& line) { spdlog::info(line); }};
     const std::string build =

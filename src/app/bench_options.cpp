@@ -110,6 +110,10 @@ void bind_bench(CLI::App& app, BenchOptions& o)
     app.add_option("--json", o.json, "Write every run of every method to this file")
         ->type_name("FILE");
     app.add_option("--csv", o.csv, "Write the tables to this file")->type_name("FILE");
+    app.add_option("--html", o.html, "Write a page with plots and tables")->type_name("FILE");
+    app.add_option("--svg", o.svg,
+                   "Write a plot of error against time per scene and mode into this folder")
+        ->type_name("FOLDER");
     app.add_option("--against", o.against,
                    "Compare the results file SCENE with this one: what differs by more than noise?")
         ->type_name("FILE");

@@ -115,6 +115,8 @@ struct BenchOptions {
     bool list = false;    ///< print the methods and be done
     std::string json;     ///< file; empty: none
     std::string csv;      ///< file; empty: none
+    std::string html;     ///< file; empty: none
+    std::string svg;      ///< folder of plots; empty: none
     std::string against;  ///< results file; empty: measure
     LogOptions log;
 };

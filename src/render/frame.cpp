@@ -185,14 +185,26 @@ LayeredImage render_frame(const Scene& scene, const RenderDescription& render,
     const auto start = std::chrono::steady_clock::now();
     const double cpu_start = process_cpu_seconds();
     const AovSet aovs = parse_aovs(output.aovs);
+    if (scene.surfaces && render.estimator == EstimatorKind::March) {
+        throw Error(ExitCode::Input, "the ray marcher cannot render [[objects]]; use \"path\"");
+    }
     const FrameInputs frame{scene, render, aovs, build_light_sampler(scene, render.path)};
     const Camera& camera = scene.camera;
     const FrameControl control{stop, tile_done};
     Film film(camera.width, camera.height, aovs, output.color_type);
-    const bool finished =
-        render.estimator == EstimatorKind::Restir
-            ? render_restir(scene, render, aovs, frame.lights, control, history.impl(), film, stats)
-            : render_paths(frame, control, film, stats);
+    const auto render_all = [&] {
+        FrameHistory::Impl& kept = history.impl();
+        switch (render.estimator) {
+            case EstimatorKind::Path:
+                return render_paths(frame, control, film, stats);
+            case EstimatorKind::Restir:
+                return render_restir(scene, render, aovs, frame.lights, control, kept, film, stats);
+            case EstimatorKind::March:
+                return render_marched(scene, render, control, kept.march, film, stats);
+        }
+        return false;
+    };
+    const bool finished = render_all();
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     stats.render_seconds = wall.count();
     stats.render_cpu_seconds = process_cpu_seconds() - cpu_start;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "restir/media_extent.h"
+#include "volumes/media_extent.h"
 #include "restir/media_in_view.h"
 #include "restir/same.h"
 

@@ -15,6 +15,8 @@ struct SceneTraits {
     bool several_lights = false;   ///< a choice of light is to be made
     bool local_lights = false;     ///< lights at a finite distance
     bool infinite_lights = false;  ///< distant lights or an environment
+    bool surfaces = false;
+    int light_count = 0;  ///< the environment apart
 };
 
 [[nodiscard]] SceneTraits traits_of(const Scene& scene);

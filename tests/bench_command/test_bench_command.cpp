@@ -130,7 +130,8 @@ TEST(BenchCommand, QuickMeasuresWritesAndCompares)
     const std::string json = folder.file("a.json");
     const std::string csv = folder.file("a.csv");
     const std::string table = bench({scene, "--quick", "--resolution", "32x18", "--runs", "2",
-                                     "--time-budget", "0.5", "--json", json, "--csv", csv});
+                                     "--time-budget", "0.5", "--json", json, "--csv", csv, "--html",
+                                     folder.file("a.html"), "--svg", folder.file("plots")});
     EXPECT_TRUE(contains(table, "32 x 18 pixels, frame 5")) << table;
     EXPECT_TRUE(contains(table, "path-exact")) << table;
 
@@ -147,7 +148,8 @@ TEST(BenchCommand, QuickMeasuresWritesAndCompares)
             EXPECT_EQ(row.at("runs").size(), 2u);
             EXPECT_EQ(row.at("non_finite"), 0);
             EXPECT_GT(row.at("figures").at("cpu_us"), 0.0);
-            EXPECT_GT(row.at("figures").at("n_var"), 0.0);
+            const bool has_noise = row.at("name") != "march";
+            EXPECT_EQ(row.at("figures").at("n_var") > 0.0, has_noise);
             EXPECT_EQ(row.at("curve").size(), is_still ? 2u : 0u);  // 1 and 4 times the samples
             EXPECT_EQ(row.at("memory_bytes").at("film"), 32 * 18 * 4 * 4);
             const auto& work = row.at("work");  // the preview, too, walks its camera rays
@@ -159,6 +161,14 @@ TEST(BenchCommand, QuickMeasuresWritesAndCompares)
         EXPECT_DOUBLE_EQ(best, 1.0);
     }
     EXPECT_TRUE(contains(read_bytes(csv), "still,path-exact,32,18,5,"));
+
+    const std::string html = read_bytes(folder.file("a.html"));
+    EXPECT_TRUE(contains(html, "<svg"));
+    EXPECT_TRUE(contains(html, "us to 1%"));
+    EXPECT_FALSE(contains(html, "src="));
+    EXPECT_FALSE(contains(html, "href="));
+    EXPECT_TRUE(contains(read_bytes(folder.file("plots/a-still.svg")), "path-exact"));
+    EXPECT_TRUE(contains(read_bytes(folder.file("plots/a-static.svg")), "xmlns"));
 
     const std::string changes = bench({json, "--against", json});
     EXPECT_TRUE(contains(changes, "path-exact")) << changes;
