@@ -11,6 +11,7 @@
 #include "app/text_file.h"
 #include "bench/report.h"
 #include "bench/result_changes.h"
+#include "bench/sweep_report.h"
 #include "core/error.h"
 #include "core/parallel.h"
 #include "plots/page.h"
@@ -94,6 +95,47 @@ void measure(const BenchOptions& options)
     fmt::print("{}", bench_legend());
 }
 
+void write_sweeps(const BenchOptions& options, const std::vector<SweepResult>& sweeps)
+{
+    if (!options.json.empty()) write_text_file(options.json, sweeps_json(sweeps));
+    if (!options.csv.empty()) write_text_file(options.csv, sweeps_csv(sweeps));
+    if (!options.html.empty()) write_text_file(options.html, sweeps_html(sweeps));
+    if (options.svg.empty()) return;
+    const std::string name = fmt::format("sweep-{}.svg", sweep_info(sweeps.back().kind).name);
+    write_text_file((std::filesystem::path(options.svg) / name).string(),
+                    svg_file(sweep_plot(sweeps.back())));
+}
+
+void measure_sweeps(const BenchOptions& options)
+{
+    const StopSignals signals;
+    const std::vector<SweepKind> kinds = choose_sweeps(options.sweep);
+    SweepParams params;
+    if (!options.methods.empty()) params.methods = options.methods;
+    params.seconds = options.max_seconds;
+    params.most_threads = available_threads();
+    (void)choose_methods(params.methods, {});
+    if (options.inputs.size() > 1) {
+        throw Error(ExitCode::Usage, "--sweep measures one scene, or its own");
+    }
+    std::optional<SceneDescription> scene;
+    if (!options.inputs.empty()) scene = load_bench_scene(options.inputs.front(), options);
+    for (const SweepKind kind : kinds) {
+        if (!scene || sweep_info(kind).takes_scene) continue;
+        throw Error(ExitCode::Usage, fmt::format("--sweep {} has a scene of its own; leave out {}",
+                                                 sweep_info(kind).name, options.inputs.front()));
+    }
+    require_writable(options);
+    const SweepHooks hooks{stop_requested, [](const std::string& line) { spdlog::info(line); }};
+    std::vector<SweepResult> sweeps;
+    for (const SweepKind kind : kinds) {
+        sweeps.push_back(run_sweep(kind, scene, params, hooks));
+        fmt::print("{}{}", sweeps.size() > 1 ? "\n" : "", sweep_text(sweeps.back()));
+        std::fflush(stdout);
+        write_sweeps(options, sweeps);
+    }
+}
+
 void compare_results(const BenchOptions& options)
 {
     if (options.inputs.size() != 1) {
@@ -119,6 +161,8 @@ void run_bench(const BenchOptions& options)
         print_methods();
     } else if (!options.against.empty()) {
         compare_results(options);
+    } else if (!options.sweep.empty()) {
+        measure_sweeps(options);
     } else if (options.inputs.empty()) {
         throw Error(ExitCode::Usage, "no scene to measure\nTry: mote bench --help");
     } else {

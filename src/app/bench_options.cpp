@@ -114,6 +114,17 @@ void bind_bench(CLI::App& app, BenchOptions& o)
     app.add_option("--svg", o.svg,
                    "Write a plot of error against time per scene and mode into this folder")
         ->type_name("FOLDER");
+    app.add_option("--sweep", o.sweep,
+                   "What frames cost as something grows, by comma: threads, resolution, voxels, "
+                   "particles, lights, empty, or all. On a scene of its own, or (threads, "
+                   "resolution, empty) on SCENE. --methods are those measured; default: "
+                   "path,restir-off")
+        ->type_name("LIST");
+    app.add_option("--max-seconds", o.max_seconds,
+                   "Time for each sweep [s]; sizes that are not expected to fit are left out")
+        ->check(CLI::Range(0.1, 1e6))
+        ->capture_default_str()
+        ->type_name("S");
     app.add_option("--against", o.against,
                    "Compare the results file SCENE with this one: what differs by more than noise?")
         ->type_name("FILE");
@@ -122,7 +133,8 @@ void bind_bench(CLI::App& app, BenchOptions& o)
         "Examples:\n"
         "  mote bench scenes/bench_plume_g3.toml --json before.json\n"
         "  mote bench scenes/bench_1000_lights.toml --methods 'path-tree*' --quick\n"
-        "  mote bench after.json --against before.json\n");
+        "  mote bench after.json --against before.json\n"
+        "  mote bench --sweep lights,particles --html sweeps.html\n");
 }
 
 BenchParams bench_params(const BenchOptions& options)
