@@ -23,7 +23,7 @@ namespace mote {
 
 namespace {
 
-constexpr const char* quick_size[] = {"render.width=160", "render.height=90"};
+constexpr const char* quick_size[] = {"render.width=112", "render.height=63"};
 
 SceneDescription load_bench_scene(const std::string& path, const BenchOptions& options)
 {

@@ -19,7 +19,7 @@ constexpr int most_frames = 1000;
 /// What --quick stands for, where nothing else is said.
 constexpr int quick_runs = 4;
 constexpr FrameCounts quick_frames{4, 4};
-constexpr double quick_seconds = 40.0;
+constexpr double quick_seconds = 30.0;
 
 FrameCounts parse_frame_counts(const std::string& text)
 {
@@ -104,7 +104,7 @@ void bind_bench(CLI::App& app, BenchOptions& o)
     bind_resolution(app, o.resolution);
     bind_overrides(app, o.overrides);
     app.add_flag("--quick", o.quick,
-                 "Small and short, for a look before and after a change: 160x90, 4 runs, 4+4 "
+                 "Small and short, for a look before and after a change: 112x63, 4 runs, 4+4 "
                  "frames, within a minute per scene");
     app.add_flag("--list", o.list, "Print the methods and what they are");
     app.add_option("--json", o.json, "Write every run of every method to this file")

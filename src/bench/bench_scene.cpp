@@ -25,6 +25,7 @@ constexpr int reference_runs = 8;
 constexpr int fewest_runs = 2;
 /// Of a time budget; the rest is for the reference image.
 constexpr double runs_share = 0.5;
+constexpr double least_reference_share = 0.2;
 
 double now()
 {
@@ -63,14 +64,18 @@ struct Bench {
 };
 
 /// CPU time of one run of every method in one mode, by the short runs.
-double round_seconds(const Bench& bench, const FramePlan& plan)
+double round_seconds(const Bench& bench, size_t mode)
 {
+    const FramePlan& plan = bench.plans[mode];
     const std::vector<int> factors = curve_factors(plan);
     const int factor = std::accumulate(factors.begin(), factors.end(), 0);
     double seconds = 0.0;
     for (size_t i = 0; i < bench.methods.size(); ++i) {
-        seconds += frames_rendered(plan, bench.methods[i].keeps_history) * factor *
-                   bench.samples[i] * bench.pilots[i].sample_seconds;
+        const int frames = frames_rendered(plan, bench.methods[i].keeps_history);
+        const double builds =
+            bench.modes[mode] == BenchMode::Moving ? frames : static_cast<double>(factors.size());
+        seconds += frames * factor * bench.samples[i] * bench.pilots[i].sample_seconds +
+                   builds * bench.pilots[i].cache_seconds;
     }
     return seconds;
 }
@@ -203,14 +208,17 @@ SceneResult bench_scene(const SceneDescription& scene, const BenchParams& params
     prepare(bench);
 
     double round = 0.0;
-    for (const FramePlan& plan : bench.plans) round += round_seconds(bench, plan);
+    for (size_t i = 0; i < bench.plans.size(); ++i) round += round_seconds(bench, i);
     const double left = std::max(params.time_budget - (now() - start), 0.0);
     int rounds = params.runs;
     double reference_seconds = params.runs * round;
     if (params.time_budget > 0.0) {
-        const double fitting = std::floor(runs_share * left / (round * bench.wall_per_cpu));
+        const double round_wall = round * bench.wall_per_cpu;
+        const double fitting = std::floor(runs_share * left / round_wall);
         rounds = static_cast<int>(std::clamp(fitting, double{fewest_runs}, double(params.runs)));
-        reference_seconds = (1.0 - runs_share) * left / bench.wall_per_cpu;
+        // Where the fewest runs take more than their share, the reference image has the rest.
+        reference_seconds =
+            std::max(left - rounds * round_wall, least_reference_share * left) / bench.wall_per_cpu;
     }
     if (params.reference_time > 0.0) reference_seconds = params.reference_time;
 

@@ -80,9 +80,10 @@ int64_t pixel_passes(const RenderDescription& render)
 
 size_t history_bytes(const FrameHistory::Impl& history)
 {
-    return history.before.domains.memory_bytes() +
-           history.before.reservoirs.size() * sizeof(Reservoir) +
-           history.pixels.size() * sizeof(PixelFilm);
+    const FinishedPass& pass = history.before;
+    return pass.domains.memory_bytes() +
+           (pass.reservoirs.size() + pass.surface_reservoirs.size()) * sizeof(Reservoir) +
+           pass.surfaces.size() * sizeof(SurfaceDomain) + history.pixels.size() * sizeof(PixelFilm);
 }
 
 /// The scene for as long as the frame takes; with reuse its samples must outlive the frame.

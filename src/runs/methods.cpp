@@ -49,6 +49,9 @@ SceneTraits traits_of(const Scene& scene)
     }
     if (scene.environment) traits.infinite_lights = true;
     traits.surfaces = scene.surfaces != nullptr;
+    traits.glowing_media =
+        std::any_of(scene.media.volumes.begin(), scene.media.volumes.end(),
+                    [](const Volume& volume) { return volume.emission_params.is_on(); });
     traits.light_count = static_cast<int>(scene.lights.size());
     return traits;
 }

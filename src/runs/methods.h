@@ -16,7 +16,11 @@ struct SceneTraits {
     bool local_lights = false;     ///< lights at a finite distance
     bool infinite_lights = false;  ///< distant lights or an environment
     bool surfaces = false;
+    bool glowing_media = false;
     int light_count = 0;  ///< the environment apart
+
+    /// Whether restir has reservoirs at all: lights at infinity have closed forms in smoke.
+    [[nodiscard]] bool has_reservoirs() const { return local_lights || surfaces || glowing_media; }
 };
 
 [[nodiscard]] SceneTraits traits_of(const Scene& scene);

@@ -40,6 +40,13 @@ std::vector<Method> restir_methods()
                       "restir as published: 4 candidates, cached target, cap 20, 5 neighbours",
                       [](RestirParams& r) { r = make_restir_params(RestirPreset::Textbook); }),
     };
+    // Rows that would be the same as restir-off.
+    for (Method& method : table) {
+        const bool reuses = method.name == "restir-temporal" || method.name == "restir-spatial" ||
+                            method.name == "restir-both";
+        if (!reuses) continue;
+        method.is_worthwhile = [](const SceneTraits& traits) { return traits.has_reservoirs(); };
+    }
     // Lights nearby have no closed form, and only theirs are reused.
     Method preview =
         restir_method("restir-preview", "restir's closed form alone; biased", [](RestirParams& r) {

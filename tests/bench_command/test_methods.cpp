@@ -54,10 +54,13 @@ TEST(Methods, TheLightsOfTheSceneDecideWhatIsMeasured)
     EXPECT_TRUE(is_measured("restir-preview", {false, false, true}));
     EXPECT_FALSE(is_measured("restir-preview", {false, true, true}));
     EXPECT_TRUE(is_measured("restir-constant-mis", {false, true, true}));
+    EXPECT_TRUE(is_measured("restir-both", {false, true, true}));
+    EXPECT_FALSE(is_measured("restir-both", {false, false, true}));
+    EXPECT_TRUE(is_measured("restir-both", {false, false, true, true}));
     EXPECT_FALSE(is_measured("restir-constant-mis", {false, false, true}));
-    EXPECT_TRUE(is_measured("march", {false, true, true, false, 2}));
-    EXPECT_FALSE(is_measured("march", {false, true, true, false, 1000}));
-    EXPECT_FALSE(is_measured("march", {false, true, true, true, 2}));
+    EXPECT_TRUE(is_measured("march", {false, true, true, false, false, 2}));
+    EXPECT_FALSE(is_measured("march", {false, true, true, false, false, 1000}));
+    EXPECT_FALSE(is_measured("march", {false, true, true, true, false, 2}));
 }
 
 TEST(Methods, AreChosenByNameAndBeginning)
@@ -103,7 +106,7 @@ TEST(Methods, AreCalledBiasedWhereTheSettingsAre)
 
 TEST(Methods, RowsTakeEqualTimes)
 {
-    const std::vector<Pilot> pilots{{1.0, 1.0}, {2.0, 1.0}, {0.5, 1.0}};
+    const std::vector<Pilot> pilots{{1.0, 0.0, 1.0}, {2.0, 0.0, 1.0}, {0.5, 0.0, 1.0}};
     const Method open = method_of(true, 0);
     // Nobody sets the time: four samples of the slowest row.
     EXPECT_EQ(equal_time_samples({open, open, open}, pilots, 0), (std::vector<int>{8, 4, 16}));
@@ -112,26 +115,27 @@ TEST(Methods, RowsTakeEqualTimes)
     const Method fixed = method_of(false, 3);
     EXPECT_EQ(equal_time_samples({open, fixed, open}, pilots, 0), (std::vector<int>{6, 3, 12}));
     EXPECT_EQ(equal_time_samples({open, fixed, open}, pilots, 5), (std::vector<int>{5, 3, 5}));
-    EXPECT_EQ(equal_time_samples({open}, {{1e-300, 1.0}}, 0).size(), 1u);
+    EXPECT_EQ(equal_time_samples({open}, {{1e-300, 0.0, 1.0}}, 0).size(), 1u);
 }
 
 TEST(Methods, TheReferenceIsTheBestPathTracer)
 {
-    const std::vector<Pilot> pilots{{1.0, 4.0}, {2.0, 1.0}, {0.1, 0.1}};
+    const std::vector<Pilot> pilots{{1.0, 0.0, 4.0}, {2.0, 0.0, 1.0}, {0.1, 0.0, 0.1}};
     const Method path = method_of(true, 0);
     EXPECT_EQ(best_reference_row({path, path, method_of(false, 0)}, pilots), 1);
-    EXPECT_EQ(best_reference_row({method_of(false, 0)}, {{1.0, 1.0}}), -1);
+    EXPECT_EQ(best_reference_row({method_of(false, 0)}, {{1.0, 0.0, 1.0}}), -1);
 }
 
 TEST(Methods, OnlyHopelessPathTracersAreLeftOut)
 {
     // Variance times time: 1, 2.9, 3.1, and 100 of a row that is no reference.
-    const std::vector<Pilot> pilots{{1.0, 1.0}, {1.0, 2.9}, {3.1, 1.0}, {10.0, 10.0}};
+    const std::vector<Pilot> pilots{
+        {1.0, 0.0, 1.0}, {1.0, 0.0, 2.9}, {3.1, 0.0, 1.0}, {10.0, 0.0, 10.0}};
     const Method path = method_of(true, 0);
     const Method other = method_of(false, 1);
     EXPECT_EQ(worth_measuring({path, path, path, other}, pilots),
               (std::vector<bool>{true, true, false, true}));
-    EXPECT_EQ(worth_measuring({other}, {{10.0, 10.0}}), std::vector<bool>{true});
+    EXPECT_EQ(worth_measuring({other}, {{10.0, 0.0, 10.0}}), std::vector<bool>{true});
 }
 
 TEST(Modes, FollowWhatMoves)

@@ -44,7 +44,6 @@ TEST_P(ShippedScene, CountsNothingThatMustNotHappen)
     PrepareStats ignored;
     const Scene frame = prepare_frame(scene, scene.first_frame + 12, {false, true}, cache, ignored);
     for (const EstimatorKind estimator : {EstimatorKind::Path, EstimatorKind::Restir}) {
-        if (frame.surfaces && estimator == EstimatorKind::Restir) continue;
         scene.render.estimator = estimator;
         // A scene's own limit of events is its choice; beyond it every path ends by itself.
         for (const int bounces : {scene.render.path.max_bounces, 10'000}) {
