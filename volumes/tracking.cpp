@@ -21,11 +21,14 @@ float optical_depth_up_to(const Volume& volume, const Ray& ray, Interval range, 
     if (is_void(volume)) return 0.0f;
     const LocalRay local = density_ray(volume, ray, range);
     double sum = 0.0;
+    int64_t bricks = 0;
     const double stop = limit / static_cast<double>(volume.density_scale);
     for_each_brick(*volume.density, local, [&](const BrickSpan& span) {
         sum += static_cast<double>(integrate_brick(*volume.density, local, span));
+        ++bricks;
         return sum < stop;
     });
+    tracking_counts.closed_bricks += bricks;
     return static_cast<float>(sum * static_cast<double>(volume.density_scale));
 }
 
@@ -40,6 +43,7 @@ std::optional<Collision> sample_free_flight(const Media& media, const Ray& ray, 
         if (is_void(volume)) continue;
         const LocalRay local = density_ray(volume, ray, range);
         if (local.misses()) continue;
+        ++tracking_counts.free_flights;
         const float s = track_delta(*volume.density, local, volume.density_scale, rng);
         if (s < 0.0f) continue;
         nearest = collision_at(volume, local, s);
@@ -78,6 +82,7 @@ float estimate_transmittance(const Media& media, const Ray& ray, Interval range,
     float T = 1.0f;
     for (const Volume& volume : media.volumes) {
         if (is_void(volume)) continue;
+        ++tracking_counts.shadow_rays;
         if (kind == TransmittanceKind::Exact) {
             T *= std::exp(-optical_depth_up_to(volume, ray, range, static_cast<double>(opaque)));
         } else {

@@ -19,7 +19,7 @@ constexpr int most_frames = 1000;
 /// What --quick stands for, where nothing else is said.
 constexpr int quick_runs = 4;
 constexpr FrameCounts quick_frames{4, 4};
-constexpr double quick_seconds = 40.0;
+constexpr double quick_seconds = 30.0;
 
 FrameCounts parse_frame_counts(const std::string& text)
 {
@@ -55,13 +55,15 @@ void bind_bench(CLI::App& app, BenchOptions& o)
         ->type_name("LIST");
     app.add_option(
            "--modes", o.modes,
-           "still: one frame alone, of many samples; static: one frame after warm-up "
-           "frames; moving: the same in the animation. Default: moving if anything moves, else "
-           "still,static")
+           "still: one frame alone, of many samples, with its error at fewer; static: one frame "
+           "after "
+           "warm-up frames; accumulated: the mean of several; camera: static, but the camera "
+           "travels 1 degree a frame around its focus; moving: the animation. Default: moving if "
+           "anything moves, else still,static")
         ->type_name("LIST");
     app.add_option("--frames", o.frames,
-                   "Frames before the one compared (static, moving), and how often still takes the "
-                   "samples of a frame. Default: 8+8")
+                   "Frames before those compared (but for still); and how often still takes the "
+                   "samples of a frame, and accumulated frames. Default: 8+8")
         ->type_name("W+N");
     app.add_option("--frame", o.frame,
                    "The frame compared. Default: the scene's first after the warm-up")
@@ -102,12 +104,27 @@ void bind_bench(CLI::App& app, BenchOptions& o)
     bind_resolution(app, o.resolution);
     bind_overrides(app, o.overrides);
     app.add_flag("--quick", o.quick,
-                 "Small and short, for a look before and after a change: 160x90, 4 runs, 4+4 "
+                 "Small and short, for a look before and after a change: 112x63, 4 runs, 4+4 "
                  "frames, within a minute per scene");
     app.add_flag("--list", o.list, "Print the methods and what they are");
     app.add_option("--json", o.json, "Write every run of every method to this file")
         ->type_name("FILE");
     app.add_option("--csv", o.csv, "Write the tables to this file")->type_name("FILE");
+    app.add_option("--html", o.html, "Write a page with plots and tables")->type_name("FILE");
+    app.add_option("--svg", o.svg,
+                   "Write a plot of error against time per scene and mode into this folder")
+        ->type_name("FOLDER");
+    app.add_option("--sweep", o.sweep,
+                   "What frames cost as something grows, by comma: threads, resolution, voxels, "
+                   "particles, lights, empty, or all. On a scene of its own, or (threads, "
+                   "resolution, empty) on SCENE. --methods are those measured; default: "
+                   "path,restir-off")
+        ->type_name("LIST");
+    app.add_option("--max-seconds", o.max_seconds,
+                   "Time for each sweep [s]; sizes that are not expected to fit are left out")
+        ->check(CLI::Range(0.1, 1e6))
+        ->capture_default_str()
+        ->type_name("S");
     app.add_option("--against", o.against,
                    "Compare the results file SCENE with this one: what differs by more than noise?")
         ->type_name("FILE");
@@ -116,7 +133,8 @@ void bind_bench(CLI::App& app, BenchOptions& o)
         "Examples:\n"
         "  mote bench scenes/bench_plume_g3.toml --json before.json\n"
         "  mote bench scenes/bench_1000_lights.toml --methods 'path-tree*' --quick\n"
-        "  mote bench after.json --against before.json\n");
+        "  mote bench after.json --against before.json\n"
+        "  mote bench --sweep lights,particles --html sweeps.html\n");
 }
 
 BenchParams bench_params(const BenchOptions& options)

@@ -29,6 +29,8 @@ const char* estimator_name(EstimatorKind kind)
             return "path, unbiased";
         case EstimatorKind::Restir:
             return "restir";
+        case EstimatorKind::March:
+            return "march, biased";
     }
     return "";
 }

@@ -112,10 +112,14 @@ struct BenchOptions {
     int seed = 1;
     int threads = 1;
     bool quick = false;
-    bool list = false;    ///< print the methods and be done
-    std::string json;     ///< file; empty: none
-    std::string csv;      ///< file; empty: none
-    std::string against;  ///< results file; empty: measure
+    bool list = false;          ///< print the methods and be done
+    std::string json;           ///< file; empty: none
+    std::string csv;            ///< file; empty: none
+    std::string html;           ///< file; empty: none
+    std::string svg;            ///< folder of plots; empty: none
+    std::string sweep;          ///< by comma; empty: methods on scenes are measured
+    double max_seconds = 60.0;  ///< of a sweep
+    std::string against;        ///< results file; empty: measure
     LogOptions log;
 };
 

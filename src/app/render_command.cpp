@@ -141,6 +141,10 @@ void render_one(const FrameFiles& files, Run& run, Progress& progress, FrameReco
         spdlog::warn("frame {}: {} samples were not finite and count as black", files.frame,
                      record.render.dropped_non_finite);
     }
+    if (record.render.tracking.majorant_violations > 0) {
+        spdlog::warn("frame {}: {} densities were above their majorants: this frame is biased",
+                     files.frame, record.render.tracking.majorant_violations);
+    }
 
     const double write_start = wall_seconds();
     add_metadata(image, scene, files.frame, inputs, write_start - start, run.options.reproducible);

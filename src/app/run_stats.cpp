@@ -30,6 +30,11 @@ Json restir_json(const FrameStats& stats)
             {"direction_sets", stats.caches.direction_sets},
             {"local_lights", stats.caches.local_lights},
             {"light_cells", stats.caches.light_cells},
+            {"cache_bytes",
+             {{"transmittance_maps", stats.caches.map_bytes},
+              {"directions", stats.caches.direction_bytes},
+              {"environment", stats.caches.environment_bytes},
+              {"light_cells", stats.caches.cell_bytes}}},
             {"camera_rays", stats.camera_rays},
             {"missed_rays", stats.missed_rays},
             {"light_rays", stats.light_rays},
@@ -71,6 +76,14 @@ Json to_json(const FrameRecord& r)
     j["paths"] = r.render.paths;
     j["dropped_non_finite"] = r.render.dropped_non_finite;
     j["truncated_paths"] = r.render.truncated_paths;
+    j["majorant_violations"] = r.render.tracking.majorant_violations;
+    j["tracking"] = {{"free_flights", r.render.tracking.free_flights},
+                     {"shadow_rays", r.render.tracking.shadow_rays},
+                     {"density_lookups", r.render.tracking.lookups},
+                     {"closed_bricks", r.render.tracking.closed_bricks}};
+    j["memory_bytes"] = {{"grids", r.render.memory.grids},
+                         {"film", r.render.memory.film},
+                         {"history", r.render.memory.history}};
     if (r.render.camera_rays + r.render.missed_rays > 0) j["restir"] = restir_json(r.render);
     j["peak_memory_bytes"] = r.peak_memory;
     return j;

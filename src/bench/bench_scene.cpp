@@ -4,9 +4,11 @@
 #include <chrono>
 #include <cmath>
 #include <ctime>
+#include <numeric>
 
 #include <fmt/format.h>
 
+#include "bench/bench_rows.h"
 #include "core/error.h"
 #include "core/text.h"
 #include "runs/pilot.h"
@@ -23,6 +25,7 @@ constexpr int reference_runs = 8;
 constexpr int fewest_runs = 2;
 /// Of a time budget; the rest is for the reference image.
 constexpr double runs_share = 0.5;
+constexpr double least_reference_share = 0.2;
 
 double now()
 {
@@ -60,36 +63,27 @@ struct Bench {
     [[nodiscard]] FramePlan last_frame() const { return {{plans.front().frames.back()}, 1}; }
 };
 
-int frames_rendered(const FramePlan& plan, const Method& method)
-{
-    return method.keeps_history ? static_cast<int>(plan.frames.size()) : 1;
-}
-
 /// CPU time of one run of every method in one mode, by the short runs.
-double round_seconds(const Bench& bench, const FramePlan& plan)
+double round_seconds(const Bench& bench, size_t mode)
 {
+    const FramePlan& plan = bench.plans[mode];
+    const std::vector<int> factors = curve_factors(plan);
+    const int factor = std::accumulate(factors.begin(), factors.end(), 0);
     double seconds = 0.0;
     for (size_t i = 0; i < bench.methods.size(); ++i) {
-        seconds += frames_rendered(plan, bench.methods[i]) * plan.sample_factor * bench.samples[i] *
-                   bench.pilots[i].sample_seconds;
+        const int frames = frames_rendered(plan, bench.methods[i].keeps_history);
+        const double builds =
+            bench.modes[mode] == BenchMode::Moving ? frames : static_cast<double>(factors.size());
+        seconds += frames * factor * bench.samples[i] * bench.pilots[i].sample_seconds +
+                   builds * bench.pilots[i].cache_seconds;
     }
     return seconds;
 }
 
-RenderDescription settings_of(const Bench& bench, const Method& method, int samples, uint32_t seed)
+RowInputs row_inputs(const Bench& bench, size_t method, const FramePlan& plan)
 {
-    RenderDescription render = bench.scene.render;
-    method.edit(render);
-    render.samples = samples;
-    render.seed = seed;
-    return render;
-}
-
-RunFigures figures_of(const PlayedRun& run, const PixelStats& reference)
-{
-    const double scale = 1e6 / static_cast<double>(run.image.size());
-    return {measure_error(run.image, reference), scale * run.cpu_seconds,
-            scale * run.cache_cpu_seconds, scale * run.wall_seconds};
+    return {bench.methods[method], bench.samples[method], plan,
+            bench.scene.render,    bench.reference,       bench.hooks.stop};
 }
 
 /// Renders the reference image, for about `seconds` of CPU time.
@@ -116,8 +110,8 @@ ReferenceInfo render_reference(Bench& bench, double seconds)
         "reference image: {}, {} x {} samples per pixel, about {:.0f} s of CPU time", method.name,
         info.runs, info.samples, info.runs * info.samples * pilot.sample_seconds));
     for (uint32_t k = 0; k < reference_runs; ++k) {
-        const RenderDescription render =
-            settings_of(bench, method, info.samples, reference_seed + bench.params.seed + k);
+        const RenderDescription render = settings_of(bench.scene.render, method, info.samples,
+                                                     reference_seed + bench.params.seed + k);
         add_run(bench.reference,
                 play_run(last, method.keeps_history, render, bench.hooks.stop).image);
     }
@@ -136,35 +130,24 @@ ModeResult run_mode(const Bench& bench, size_t mode_index, int rounds, double se
 {
     const BenchMode mode = bench.modes[mode_index];
     const FramePlan& plan = bench.plans[mode_index];
-    ModeResult result;
-    result.mode = mode;
+    std::vector<RowRuns> rows;
     for (size_t i = 0; i < bench.methods.size(); ++i) {
-        MethodResult row;
-        row.name = bench.methods[i].name;
-        row.is_reference = bench.methods[i].is_reference;
-        row.samples = bench.samples[i] * plan.sample_factor;
-        row.frames = frames_rendered(plan, bench.methods[i]);
-        result.rows.push_back(std::move(row));
+        rows.push_back(start_row(row_inputs(bench, i, plan)));
     }
-    std::vector<PixelStats> tested(bench.methods.size());
     const double start = now();
     for (int round = 0; round < rounds; ++round) {
         const double elapsed = now() - start;
         if (seconds > 0.0 && round >= fewest_runs && elapsed * (round + 1) > seconds * round) break;
         bench.say(fmt::format("{}: run {} of {}", mode_name(mode), round + 1, rounds));
-        for (size_t i = 0; i < bench.methods.size(); ++i) {
-            const Method& method = bench.methods[i];
-            const uint32_t seed = bench.params.seed + static_cast<uint32_t>(round);
-            const PlayedRun run = play_run(plan, method.keeps_history,
-                                           settings_of(bench, method, result.rows[i].samples, seed),
-                                           bench.hooks.stop);
-            result.rows[i].non_finite += run.non_finite;
-            result.rows[i].runs.push_back(figures_of(run, bench.reference));
-            add_run(tested[i], run.image);
+        const uint32_t seed = bench.params.seed + static_cast<uint32_t>(round);
+        for (size_t i = 0; i < rows.size(); ++i) {
+            add_run(row_inputs(bench, i, plan), seed, rows[i]);
         }
     }
-    for (size_t i = 0; i < tested.size(); ++i) {
-        result.rows[i].figures = summarize(result.rows[i].runs, tested[i], bench.reference);
+    ModeResult result;
+    result.mode = mode;
+    for (size_t i = 0; i < rows.size(); ++i) {
+        result.rows.push_back(finish_row(row_inputs(bench, i, plan), std::move(rows[i])));
     }
     rate_rows(result.rows);
     return result;
@@ -225,14 +208,17 @@ SceneResult bench_scene(const SceneDescription& scene, const BenchParams& params
     prepare(bench);
 
     double round = 0.0;
-    for (const FramePlan& plan : bench.plans) round += round_seconds(bench, plan);
+    for (size_t i = 0; i < bench.plans.size(); ++i) round += round_seconds(bench, i);
     const double left = std::max(params.time_budget - (now() - start), 0.0);
     int rounds = params.runs;
     double reference_seconds = params.runs * round;
     if (params.time_budget > 0.0) {
-        const double fitting = std::floor(runs_share * left / (round * bench.wall_per_cpu));
+        const double round_wall = round * bench.wall_per_cpu;
+        const double fitting = std::floor(runs_share * left / round_wall);
         rounds = static_cast<int>(std::clamp(fitting, double{fewest_runs}, double(params.runs)));
-        reference_seconds = (1.0 - runs_share) * left / bench.wall_per_cpu;
+        // Where the fewest runs take more than their share, the reference image has the rest.
+        reference_seconds =
+            std::max(left - rounds * round_wall, least_reference_share * left) / bench.wall_per_cpu;
     }
     if (params.reference_time > 0.0) reference_seconds = params.reference_time;
 

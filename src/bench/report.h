@@ -27,6 +27,13 @@ struct BenchReport {
 /// A line per scene, mode and method, with a line of column names.
 [[nodiscard]] std::string bench_csv(const BenchReport& report);
 
+/// Error against time of a mode's rows, log over log, as an <svg> element; dashed: known to be
+/// biased.
+[[nodiscard]] std::string error_plot(const SceneResult& scene, const ModeResult& mode);
+
+/// A self-contained page: plots of every scene and mode, and the tables.
+[[nodiscard]] std::string bench_html(const BenchReport& report);
+
 /// Reads what bench_json wrote, names, runs and settings; figures are not read. `path` is for
 /// messages. Throws Error(Input) if it is something else.
 [[nodiscard]] BenchReport parse_bench_json(const std::string& text, const std::string& path);

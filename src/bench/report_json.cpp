@@ -40,27 +40,58 @@ Json to_json(const MethodFigures& f)
     Json j{
         {"n_var", f.n_var}, {"bias", f.bias}, {"bias_error", f.bias_error}, {"bias_p", f.bias_p}};
     j.update(to_json(f.error));
-    j.update({{"cpu_us", f.cpu_us},
-              {"cache_us", f.cache_us},
-              {"wall_us", f.wall_us},
-              {"efficiency", f.efficiency},
-              {"trimmed_efficiency", f.trimmed_efficiency},
-              {"efficiency_error", f.efficiency_error},
-              {"ratio", f.ratio},
-              {"trimmed_ratio", f.trimmed_ratio}});
+    j.update(
+        {{"cpu_us", f.cpu_us},
+         {"cache_us", f.cache_us},
+         {"wall_us", f.wall_us},
+         {"pass_us", f.pass_us},
+         {"bias_squared", f.bias_squared},
+         {"rel_bias_squared", f.rel_bias_squared},
+         {"us_to_1_percent", std::isinf(f.time_to_target) ? Json("never") : Json(f.time_to_target)},
+         {"slope", f.slope},
+         {"efficiency", f.efficiency},
+         {"trimmed_efficiency", f.trimmed_efficiency},
+         {"efficiency_error", f.efficiency_error},
+         {"ratio", f.ratio},
+         {"trimmed_ratio", f.trimmed_ratio}});
+    return j;
+}
+
+Json to_json(const CurvePoint& p)
+{
+    return {{"samples", p.samples},
+            {"cpu_us", p.cpu_us},
+            {"cache_us", p.cache_us},
+            {"mse", p.mse},
+            {"relmse", p.rel_mse}};
+}
+
+/// Fields by name, as work_fields() and memory_fields() list them.
+template <class Value, class Fields>
+Json fields_json(const Value& value, const Fields& fields)
+{
+    Json j = Json::object();
+    for (const auto& field : fields) j[field.name] = value.*field.value;
     return j;
 }
 
 Json to_json(const MethodResult& row)
 {
+    Json curve = Json::array();
+    for (const CurvePoint& point : row.curve) curve.push_back(to_json(point));
     Json runs = Json::array();
     for (const RunFigures& run : row.runs) runs.push_back(to_json(run));
     return {{"name", row.name},
             {"is_reference", row.is_reference},
+            {"is_biased", row.is_biased},
             {"samples", row.samples},
+            {"compared_frames", row.compared},
             {"frames", row.frames},
             {"non_finite", row.non_finite},
             {"figures", to_json(row.figures)},
+            {"curve", std::move(curve)},
+            {"work", fields_json(row.work, work_fields())},
+            {"memory_bytes", fields_json(row.memory, memory_fields())},
             {"runs", std::move(runs)}};
 }
 
@@ -170,7 +201,11 @@ std::string bench_csv(const BenchReport& report)
     std::string text =
         "scene,mode,method,width,height,frame,samples,frames,runs,cpu_us,cache_us,wall_us,n_var,"
         "mse,trimmed_mse,relmse,trimmed_relmse,worst_share,bias,bias_error,efficiency,"
-        "efficiency_error,ratio,trimmed_ratio\n";
+        "efficiency_error,ratio,trimmed_ratio,is_biased,compared_frames,pass_us,bias_squared,"
+        "rel_bias_squared,us_to_1_percent,slope";
+    for (const WorkField& field : work_fields()) text += fmt::format(",{}", field.name);
+    for (const MemoryField& field : memory_fields()) text += fmt::format(",{}_bytes", field.name);
+    text += "\n";
     for (const SceneResult& scene : report.scenes) {
         for (const ModeResult& mode : scene.modes) {
             for (const MethodResult& row : mode.rows) {
@@ -183,6 +218,17 @@ std::string bench_csv(const BenchReport& report)
                       f.error.rel_mse, f.error.trimmed_rel_mse, f.error.worst_share, f.bias,
                       f.bias_error, f.efficiency, f.efficiency_error, f.ratio, f.trimmed_ratio}) {
                     text += fmt::format(",{:.7g}", x);
+                }
+                text += fmt::format(",{},{}", row.is_biased ? 1 : 0, row.compared);
+                for (const double x :
+                     {f.pass_us, f.bias_squared, f.rel_bias_squared, f.time_to_target, f.slope}) {
+                    text += fmt::format(",{:.7g}", x);
+                }
+                for (const WorkField& field : work_fields()) {
+                    text += fmt::format(",{:.7g}", row.work.*field.value);
+                }
+                for (const MemoryField& field : memory_fields()) {
+                    text += fmt::format(",{:.0f}", row.memory.*field.value);
                 }
                 text += "\n";
             }

@@ -169,6 +169,7 @@ void PassCounts::add(const PassCounts& other)
     surfaces += other.surfaces;
     emission_integrals += other.emission_integrals;
     truncated += other.truncated;
+    tracking.add(other.tracking);
 }
 
 Rng pass_rng(const PassInputs& inputs, const PassKey& key, Stream stream)

@@ -10,6 +10,7 @@
 #include "restir/reuse_passes.h"
 #include "restir/surface_domain.h"
 #include "scene/description.h"
+#include "volumes/tracking_counts.h"
 
 namespace mote {
 
@@ -40,6 +41,7 @@ struct PassCounts {
     int64_t surfaces = 0;            ///< passes that sampled a surface's light
     int64_t emission_integrals = 0;  ///< along camera rays, over all media that glow
     int64_t truncated = 0;           ///< passes whose light could have scattered on
+    TrackingCounts tracking;         ///< of the path tracer's part
 
     void add(const PassCounts& other);
 };

@@ -2,6 +2,8 @@
 
 #include <atomic>
 #include <chrono>
+#include <mutex>
+#include <set>
 
 #include "core/error.h"
 #include "core/parallel.h"
@@ -87,6 +89,8 @@ bool render_paths(const FrameInputs& frame, const FrameControl& control, Film& f
     std::atomic<bool> stopped{false};
     std::atomic<int64_t> dropped{0};
     std::atomic<int64_t> truncated_paths{0};
+    std::mutex mutex;
+    TrackingCounts tracking;
     const auto must_stop = [&] {
         if (control.stop && control.stop()) stopped.store(true, std::memory_order_relaxed);
         return stopped.load(std::memory_order_relaxed);
@@ -94,6 +98,7 @@ bool render_paths(const FrameInputs& frame, const FrameControl& control, Film& f
     for_each_tile(camera.width, camera.height, [&](const Tile& tile) {
         int64_t tile_dropped = 0;
         int64_t tile_truncated = 0;
+        const TrackingCounts tracking_before = tracking_counts;
         for (int y = tile.y0; y < tile.y1; ++y) {
             for (int x = tile.x0; x < tile.x1; ++x) {
                 PixelFilm pixel;
@@ -110,11 +115,41 @@ bool render_paths(const FrameInputs& frame, const FrameControl& control, Film& f
         }
         dropped += tile_dropped;
         truncated_paths += tile_truncated;
+        {
+            const std::lock_guard<std::mutex> lock(mutex);
+            tracking.add(tracking_counts.since(tracking_before));
+        }
         if (control.tile_done) control.tile_done();
     });
     stats.dropped_non_finite = dropped;
     stats.truncated_paths = truncated_paths;
+    stats.tracking = tracking;
     return !stopped;
+}
+
+size_t grid_bytes(const Media& media)
+{
+    std::set<const void*> seen;  // volumes may share grids
+    size_t bytes = 0;
+    const auto add = [&](const BrickGrid* grid) {
+        if (grid != nullptr && seen.insert(grid).second) bytes += grid->memory_bytes();
+    };
+    for (const Volume& volume : media.volumes) {
+        for (const auto& grid : {volume.density, volume.temperature, volume.emission}) {
+            add(grid.get());
+        }
+        for (const auto& grid : {volume.color, volume.velocity}) {
+            for (int c = 0; grid && c < 3; ++c) add(&grid->channel[c]);
+        }
+    }
+    return bytes;
+}
+
+size_t image_bytes(const LayeredImage& image)
+{
+    size_t bytes = 0;
+    for (const Channel& channel : image.channels) bytes += channel.data.size() * sizeof(float);
+    return bytes;
 }
 
 }  // namespace
@@ -150,20 +185,34 @@ LayeredImage render_frame(const Scene& scene, const RenderDescription& render,
     const auto start = std::chrono::steady_clock::now();
     const double cpu_start = process_cpu_seconds();
     const AovSet aovs = parse_aovs(output.aovs);
+    if (scene.surfaces && render.estimator == EstimatorKind::March) {
+        throw Error(ExitCode::Input, "the ray marcher cannot render [[objects]]; use \"path\"");
+    }
     const FrameInputs frame{scene, render, aovs, build_light_sampler(scene, render.path)};
     const Camera& camera = scene.camera;
     const FrameControl control{stop, tile_done};
     Film film(camera.width, camera.height, aovs, output.color_type);
-    const bool finished =
-        render.estimator == EstimatorKind::Restir
-            ? render_restir(scene, render, aovs, frame.lights, control, history.impl(), film, stats)
-            : render_paths(frame, control, film, stats);
+    const auto render_all = [&] {
+        FrameHistory::Impl& kept = history.impl();
+        switch (render.estimator) {
+            case EstimatorKind::Path:
+                return render_paths(frame, control, film, stats);
+            case EstimatorKind::Restir:
+                return render_restir(scene, render, aovs, frame.lights, control, kept, film, stats);
+            case EstimatorKind::March:
+                return render_marched(scene, render, control, kept.march, film, stats);
+        }
+        return false;
+    };
+    const bool finished = render_all();
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     stats.render_seconds = wall.count();
     stats.render_cpu_seconds = process_cpu_seconds() - cpu_start;
     stats.paths = finished ? int64_t{render.samples} * camera.width * camera.height : 0;
     if (!finished) return {};
     LayeredImage image = film.take();
+    stats.memory.grids = grid_bytes(scene.media);
+    stats.memory.film = image_bytes(image);
     image.attributes = camera_attributes(camera);
     return image;
 }

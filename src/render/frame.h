@@ -7,8 +7,17 @@
 #include "restir/cache_stats.h"
 #include "scene/description.h"
 #include "scene/scene.h"
+#include "volumes/tracking_counts.h"
 
 namespace mote {
+
+/// What a frame holds in memory while it renders, by what it is for [bytes]; the light caches' part
+/// is in CacheParts.
+struct FrameMemory {
+    size_t grids = 0;    ///< density, emission, temperature, colour and velocity of the media
+    size_t film = 0;     ///< the image and its layers
+    size_t history = 0;  ///< reservoirs, ray tables and passes kept for the next frame
+};
 
 /// Counts and times of one rendered frame, written to --stats.
 struct FrameStats {
@@ -31,6 +40,8 @@ struct FrameStats {
     int caches_built = 0;            ///< light caches made for this frame
     int caches_reused = 0;           ///< taken over from the frame before
     CacheParts caches;               ///< what they are of
+    TrackingCounts tracking;         ///< work of the path tracer, or of its part in a frame
+    FrameMemory memory;
 };
 
 /// Asked by several threads, at every pixel and every few samples, so it must be cheap; true

@@ -78,6 +78,14 @@ int64_t pixel_passes(const RenderDescription& render)
     return int64_t{render.width} * render.height * render.samples;
 }
 
+size_t history_bytes(const FrameHistory::Impl& history)
+{
+    const FinishedPass& pass = history.before;
+    return pass.domains.memory_bytes() +
+           (pass.reservoirs.size() + pass.surface_reservoirs.size()) * sizeof(Reservoir) +
+           pass.surfaces.size() * sizeof(SurfaceDomain) + history.pixels.size() * sizeof(PixelFilm);
+}
+
 /// The scene for as long as the frame takes; with reuse its samples must outlive the frame.
 std::shared_ptr<const Scene> share(const Scene& scene, bool is_kept)
 {
@@ -135,6 +143,8 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
     stats.caches_built = history.caches->built;
     stats.caches_reused = history.caches->reused;
     stats.caches = parts_of(*history.caches);
+    stats.tracking = counts.tracking;
+    stats.memory.history = history_bytes(history);
     return finished;
 }
 
@@ -164,6 +174,7 @@ bool render_independent_passes(const PassInputs& inputs, const FrameControl& con
         }
         PassCounts tile_counts;
         int64_t tile_dropped = 0;
+        const TrackingCounts tracking_before = tracking_counts;
         for (int pass = 0; pass < inputs.render.samples; ++pass) {
             if (control.stop && control.stop()) stopped.store(true, std::memory_order_relaxed);
             if (stopped.load(std::memory_order_relaxed)) return;
@@ -179,6 +190,7 @@ bool render_independent_passes(const PassInputs& inputs, const FrameControl& con
             for_pixels([&](int x, int y, const PixelFilm& p) { accumulated->at(x, y) = p; });
         }
         if (uniform) tile_counts.bins.misses += static_cast<int64_t>(pixels * passes);
+        tile_counts.tracking = tracking_counts.since(tracking_before);
         {
             const std::lock_guard<std::mutex> lock(mutex);
             counts.add(tile_counts);

@@ -2,6 +2,7 @@
 
 #include "render/camera_pass.h"
 #include "render/frame.h"
+#include "render/march_frame.h"
 #include "restir/pass_state.h"
 
 namespace mote {
@@ -18,6 +19,7 @@ struct FrameHistory::Impl {
     FinishedPass before;         ///< its last pass, if that kept samples
     Buffer2D<PixelFilm> pixels;  ///< all passes since something changed, if they are accumulated
     bool is_last = false;        ///< no frame follows
+    MarchHistory march;          ///< of the ray marcher
 };
 
 /// All passes of a frame by the ReSTIR estimator; builds the light caches, or takes those of the

@@ -69,7 +69,9 @@ struct ReusingFrame {
         for_each_tile(buffers.colors.width(), buffers.colors.height(), [&](const Tile& tile) {
             if (must_stop()) return;
             PassCounts own;
+            const TrackingCounts before = tracking_counts;
             f(tile, own);
+            own.tracking = tracking_counts.since(before);
             const std::lock_guard<std::mutex> lock(mutex);
             counts.add(own);
         });

@@ -18,6 +18,15 @@ struct CacheParts {
     int direction_sets = 0;      ///< 1 with an environment
     int64_t local_lights = 0;    ///< lamps and glowing media that candidates choose among
     int64_t light_cells = 0;     ///< cells with a distribution over them
+    int64_t map_bytes = 0;       ///< of the transmittance maps
+    int64_t direction_bytes = 0;
+    int64_t environment_bytes = 0;  ///< of the sky's light scattered to this camera
+    int64_t cell_bytes = 0;
+
+    [[nodiscard]] int64_t bytes() const
+    {
+        return map_bytes + direction_bytes + environment_bytes + cell_bytes;
+    }
 };
 
 /// CPU time that the process has used so far, all threads [s].

@@ -1,6 +1,6 @@
 #include "restir/coarse_media.h"
 
-#include "restir/media_extent.h"
+#include "volumes/media_extent.h"
 #include "volumes/brick_builder.h"
 
 namespace mote {

@@ -2,7 +2,7 @@
 
 #include "core/parallel.h"
 #include "restir/coarse_media.h"
-#include "restir/media_extent.h"
+#include "volumes/media_extent.h"
 #include "restir/transmittance_map.h"
 
 namespace mote {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "restir/media_extent.h"
+#include "volumes/media_extent.h"
 #include "restir/media_in_view.h"
 #include "restir/same.h"
 
@@ -154,7 +154,15 @@ CacheParts parts_of(const LightCaches& caches)
     parts.transmittance_maps = static_cast<int>(caches.distant.size());
     parts.direction_sets = caches.directions ? 1 : 0;
     parts.local_lights = static_cast<int64_t>(caches.local_lights.size());
-    if (caches.cells) parts.light_cells = static_cast<int64_t>(caches.cells->cell_count());
+    for (const LightCaches::Distant& distant : caches.distant) {
+        parts.map_bytes += distant.map->stats().bytes;
+    }
+    if (caches.directions) parts.direction_bytes = caches.directions->stats().bytes;
+    if (caches.environment) parts.environment_bytes = caches.environment->stats().bytes;
+    if (caches.cells) {
+        parts.light_cells = static_cast<int64_t>(caches.cells->cell_count());
+        parts.cell_bytes = static_cast<int64_t>(caches.cells->memory_bytes());
+    }
     return parts;
 }
 

@@ -1,6 +1,6 @@
 #include "restir/smoke_lattice.h"
 
-#include "restir/media_extent.h"
+#include "volumes/media_extent.h"
 
 namespace mote {
 namespace {

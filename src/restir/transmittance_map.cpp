@@ -1,7 +1,7 @@
 #include "restir/transmittance_map.h"
 
 #include "core/parallel.h"
-#include "restir/media_extent.h"
+#include "volumes/media_extent.h"
 #include "volumes/cell_walk.h"
 
 namespace mote {

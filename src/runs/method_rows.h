@@ -6,8 +6,9 @@
 
 namespace mote {
 
-/// The rows of the two estimators; all_methods() holds them in this order.
+/// The rows of the estimators; all_methods() holds them in this order.
 [[nodiscard]] std::vector<Method> path_methods();
 [[nodiscard]] std::vector<Method> restir_methods();
+[[nodiscard]] Method march_method();
 
 }  // namespace mote

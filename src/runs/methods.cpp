@@ -16,6 +16,7 @@ std::vector<Method> make_table()
 {
     std::vector<Method> table = path_methods();
     for (Method& method : restir_methods()) table.push_back(std::move(method));
+    table.push_back(march_method());
     return table;
 }
 
@@ -47,6 +48,11 @@ SceneTraits traits_of(const Scene& scene)
         (is_infinite ? traits.infinite_lights : traits.local_lights) = true;
     }
     if (scene.environment) traits.infinite_lights = true;
+    traits.surfaces = scene.surfaces != nullptr;
+    traits.glowing_media =
+        std::any_of(scene.media.volumes.begin(), scene.media.volumes.end(),
+                    [](const Volume& volume) { return volume.emission_params.is_on(); });
+    traits.light_count = static_cast<int>(scene.lights.size());
     return traits;
 }
 

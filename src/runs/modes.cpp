@@ -14,6 +14,9 @@ namespace {
 constexpr ModeInfo table[] = {
     {BenchMode::Still, "still", "one frame alone, of many samples"},
     {BenchMode::Static, "static", "one frame after warm-up frames, nothing moves"},
+    {BenchMode::Accumulated, "accumulated",
+     "the mean of several frames after warm-up frames, nothing moves"},
+    {BenchMode::Camera, "camera", "one frame after warm-up frames, only the camera moves"},
     {BenchMode::Moving, "moving", "one frame of the animation, after the frames before it"},
 };
 
@@ -34,7 +37,27 @@ bool is_sequence(const std::optional<SequenceParams>& file)
     return file && file->pattern.find_first_of("#%$") != std::string::npos;
 }
 
+/// Turns the camera around the point it is focused on, about its own upright axis.
+void orbit(Camera& camera, double degrees)
+{
+    std::vector<Trs>& keys = camera.world_from_camera.keys;
+    const Trs first = keys.front();
+    const Vec3d up = first.rotate * Vec3d(0.0, 1.0, 0.0);
+    const Vec3d pivot =
+        first.translate - double{camera.focus_distance} * (first.rotate * Vec3d(0.0, 0.0, 1.0));
+    const glm::dquat turn = glm::angleAxis(glm::radians(degrees), up);
+    for (Trs& key : keys) {
+        key.translate = pivot + turn * (key.translate - pivot);
+        key.rotate = glm::normalize(turn * key.rotate);
+    }
+}
+
 }  // namespace
+
+int frames_rendered(const FramePlan& plan, bool keeps_history)
+{
+    return keeps_history ? static_cast<int>(plan.frames.size()) : plan.compared;
+}
 
 std::span<const ModeInfo> mode_table()
 {
@@ -77,7 +100,8 @@ FramePlan plan_frames(const SceneDescription& scene, BenchMode mode, int frame,
 {
     FramePlan plan;
     plan.sample_factor = mode == BenchMode::Still ? counts.still : 1;
-    const int warm_up = mode == BenchMode::Still ? 0 : counts.warm_up;
+    plan.compared = mode == BenchMode::Accumulated ? counts.still : 1;
+    const int before = mode == BenchMode::Still ? 0 : counts.warm_up + plan.compared - 1;
     PrepareNeeds needs;
     needs.velocity = mode == BenchMode::Moving;
     needs.velocity_may_be_missing = true;
@@ -86,9 +110,12 @@ FramePlan plan_frames(const SceneDescription& scene, BenchMode mode, int frame,
         return prepare_frame(scene, number, needs, cache, ignored);
     };
     const Scene last = prepare(frame);
-    for (int number = frame - warm_up; number < frame; ++number) {
+    for (int number = frame - before; number < frame; ++number) {
         plan.frames.push_back(mode == BenchMode::Moving ? prepare(number) : last);
         plan.frames.back().frame = number;
+        if (mode == BenchMode::Camera) {
+            orbit(plan.frames.back().camera, camera_step * (number - frame));
+        }
     }
     plan.frames.push_back(last);
     return plan;

@@ -12,9 +12,11 @@ namespace mote {
 
 /// What is shown and compared.
 enum class BenchMode {
-    Still,   ///< one frame alone, of many samples
-    Static,  ///< one frame after warm-up frames, nothing moves
-    Moving,  ///< one frame of the animation, after the frames before it
+    Still,        ///< one frame alone, of many samples
+    Static,       ///< one frame after warm-up frames, nothing moves
+    Accumulated,  ///< the mean of several frames after warm-up frames, nothing moves
+    Camera,       ///< one frame after warm-up frames, only the camera moves
+    Moving,       ///< one frame of the animation, after the frames before it
 };
 
 struct ModeInfo {
@@ -34,16 +36,23 @@ struct ModeInfo {
 /// Whether camera, volumes, particles or lights may change from frame to frame.
 [[nodiscard]] bool is_animated(const SceneDescription& scene);
 
-/// Frames that a mode renders in one run, oldest first. The last one is compared.
+/// Frames that a mode renders in one run, oldest first. The mean of the last ones is compared.
 struct FramePlan {
     std::vector<Scene> frames;
     int sample_factor = 1;  ///< multiplies the samples that methods take per frame
+    int compared = 1;       ///< frames, >= 1
 };
 
+/// Frames of a plan that a method renders: without history only those compared.
+[[nodiscard]] int frames_rendered(const FramePlan& plan, bool keeps_history);
+
 struct FrameCounts {
-    int warm_up = 8;  ///< frames before the one compared, Static and Moving
-    int still = 8;    ///< the sample_factor of Still
+    int warm_up = 8;  ///< frames before those compared, but for Still
+    int still = 8;    ///< the sample_factor of Still, and the frames of Accumulated
 };
+
+/// How far the camera of BenchMode::Camera travels around what it is focused on [degrees/frame].
+inline constexpr double camera_step = 1.0;
 
 /// Prepares the frames; all modes show the same frame last. Frames of a scene at rest share their
 /// grids, and carry their own numbers, so that their random numbers differ.

@@ -29,16 +29,17 @@ Pilot run_pilot(const FramePlan& plan, const Method& method, const RenderDescrip
     method.edit(edited);
     edited.samples = std::max(method.samples_per_frame, 1);
     PixelStats stats;
+    Pilot pilot;
     double seconds = 0.0;
     for (uint32_t k = 0; k < 2; ++k) {
         edited.seed = pilot_seed + k;
         const PlayedRun run = play_run(plan, method.keeps_history, edited, stop);
         add_run(stats, run.image);
+        pilot.cache_seconds = run.cache_cpu_seconds;
         const double without_caches = run.cpu_seconds - run.cache_cpu_seconds;
         // Others on the machine only ever make it slower.
         seconds = k == 0 ? without_caches : std::min(seconds, without_caches);
     }
-    Pilot pilot;
     pilot.sample_seconds = std::max(seconds, 1e-9) / edited.samples;
     pilot.sample_variance = trimmed_mean_variance(stats, trimmed_share) * edited.samples;
     return pilot;

@@ -10,6 +10,7 @@ namespace mote {
 /// What two short runs of a method tell: how many samples to give it, and how good it is.
 struct Pilot {
     double sample_seconds = 0.0;   ///< CPU time of one sample per pixel of one frame
+    double cache_seconds = 0.0;    ///< CPU time of building caches, where there are any
     double sample_variance = 0.0;  ///< of it, averaged over the image without the worst pixels
 
     [[nodiscard]] double cost() const { return sample_variance * sample_seconds; }

@@ -12,7 +12,8 @@ void play_frames(const FramePlan& plan, bool keeps_history, const RenderDescript
     MOTE_ASSERT(!plan.frames.empty());
     if (caches != nullptr) caches->frames.resize(plan.frames.size());
     FrameHistory history;
-    for (size_t i = keeps_history ? 0 : plan.frames.size() - 1; i < plan.frames.size(); ++i) {
+    const auto count = static_cast<size_t>(frames_rendered(plan, keeps_history));
+    for (size_t i = plan.frames.size() - count; i < plan.frames.size(); ++i) {
         // Frames at rest take over the caches of the one before.
         if (caches != nullptr && caches->frames[i]) history.impl().caches = caches->frames[i];
         FrameStats stats;

@@ -21,7 +21,7 @@ struct PlanCaches {
 using FramePlayed =
     std::function<void(size_t index, const LayeredImage& image, const FrameStats& stats)>;
 
-/// Renders the plan's frames in order, from empty history; without history only the last one.
+/// Renders the plan's frames in order, from empty history; without history only those compared.
 /// `caches` may be null: then this run builds its own. Throws Error(Interrupted) once `stop` says
 /// so. This is the one place where runs call the renderer.
 void play_frames(const FramePlan& plan, bool keeps_history, const RenderDescription& render,

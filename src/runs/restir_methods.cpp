@@ -39,16 +39,35 @@ std::vector<Method> restir_methods()
         restir_method("restir-textbook",
                       "restir as published: 4 candidates, cached target, cap 20, 5 neighbours",
                       [](RestirParams& r) { r = make_restir_params(RestirPreset::Textbook); }),
-        restir_method("restir-preview", "restir's closed form alone; biased",
-                      [](RestirParams& r) {
-                          r.reuse = ReuseMode::Off;
-                          r.corrections = false;
-                      }),
     };
-    // Lights nearby have no closed form.
-    table.back().is_worthwhile = [](const SceneTraits& traits) {
+    // Rows that would be the same as restir-off.
+    for (Method& method : table) {
+        const bool reuses = method.name == "restir-temporal" || method.name == "restir-spatial" ||
+                            method.name == "restir-both";
+        if (!reuses) continue;
+        method.is_worthwhile = [](const SceneTraits& traits) { return traits.has_reservoirs(); };
+    }
+    // Lights nearby have no closed form, and only theirs are reused.
+    Method preview =
+        restir_method("restir-preview", "restir's closed form alone; biased", [](RestirParams& r) {
+            r.reuse = ReuseMode::Off;
+            r.corrections = false;
+        });
+    preview.is_worthwhile = [](const SceneTraits& traits) {
         return traits.infinite_lights && !traits.local_lights;
     };
+    Method blind = restir_method(
+        "restir-no-visibility", "preset biased-no-visibility: shadows ignored in reuse; biased",
+        [](RestirParams& r) { r = make_restir_params(RestirPreset::BiasedNoVisibility); });
+    Method constant = restir_method(
+        "restir-constant-mis", "preset biased-constant-mis: 1/M weights; biased",
+        [](RestirParams& r) { r = make_restir_params(RestirPreset::BiasedConstantMis); });
+    blind.is_worthwhile =
+        constant.is_worthwhile = [](const SceneTraits& traits) { return traits.local_lights; };
+    for (Method* method : {&preview, &blind, &constant}) {
+        method->is_biased = true;
+        table.push_back(std::move(*method));
+    }
     return table;
 }
 

@@ -10,6 +10,7 @@
 #include "image/exr.h"
 #include "image/png.h"
 #include "particles/source.h"
+#include "scene/march_params.h"
 #include "scene/path_tracer_params.h"
 #include "scene/restir_params.h"
 #include "surfaces/material.h"
@@ -50,6 +51,7 @@ struct CameraDescription {
 enum class EstimatorKind {
     Path,    ///< the reference path tracer
     Restir,  ///< volumetric ReSTIR; events beyond the first by the path tracer
+    March,   ///< the biased ray marcher of `mote bench`: scene files cannot name it
 };
 
 struct RenderDescription {
@@ -60,6 +62,7 @@ struct RenderDescription {
     EstimatorKind estimator = EstimatorKind::Path;
     PathTracerParams path;  ///< bounces, roulette, transmittance, light choice
     RestirParams restir;
+    MarchParams march;
 };
 
 struct OutputDescription {

@@ -3,8 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "plots/page.h"
+#include "plots/svg.h"
 #include "study/pictures.h"
-#include "study/svg.h"
 #include "study/verify_report.h"
 
 namespace mote {
@@ -13,20 +14,6 @@ namespace {
 
 /// t at which the maps reach full colour.
 constexpr double full_t = 5.0;
-
-constexpr const char* page_begin = R"(<!DOCTYPE html>
-<html lang="en"><head><meta charset="utf-8"><title>mote verify</title>
-<style>
-body { font: 15px/1.45 sans-serif; margin: 2em auto; max-width: 62em; color: #222 }
-h1 { font-size: 1.4em } h2 { font-size: 1.1em; margin-top: 2em }
-pre { background: #f4f4f2; padding: 1em; overflow-x: auto; font-size: 12.5px }
-figure { display: inline-block; margin: 0 1em 1em 0; vertical-align: top }
-figure img { width: 420px; image-rendering: pixelated; border: 1px solid #ccc }
-figcaption { max-width: 420px; font-size: 13px; color: #555 }
-svg { margin: 0 1em 1em 0 } svg text { font-size: 11px; font-family: sans-serif }
-.verdict { padding: .5em 1em; color: #fff }
-</style></head><body>
-)";
 
 const char* verdict_color(Verdict verdict)
 {
@@ -133,18 +120,6 @@ std::string error_plots(const VerifyResult& result)
     return html.empty() ? html : "<h2>Errors in space and time</h2>\n" + html;
 }
 
-/// html_text makes one line of its text; this keeps the lines.
-std::string preformatted(const std::string& text)
-{
-    std::string html = "<pre>";
-    for (size_t begin = 0; begin < text.size();) {
-        const size_t end = std::min(text.find('\n', begin), text.size());
-        html += html_text(text.substr(begin, end - begin)) + "\n";
-        begin = end + 1;
-    }
-    return html + "</pre>\n";
-}
-
 std::string look_table(const Study& study)
 {
     std::string text = fmt::format("{:>6} {:>10} {:>10} {:>10} {:>10} {:>10}\n", "runs", "alpha",
@@ -162,7 +137,7 @@ std::string look_table(const Study& study)
 std::string verify_html(const VerifyReport& report)
 {
     const VerifyResult& r = report.result;
-    std::string html = page_begin;
+    std::string html = page_begin("mote verify");
     html += fmt::format("<h1>mote verify: {}</h1>\n", html_text(r.name.empty() ? r.path : r.name));
     html += fmt::format("<p class=\"verdict\" style=\"background:{}\"><b>{}</b>: {}</p>\n",
                         verdict_color(r.study.verdict()), verdict_name(r.study.verdict()),
@@ -172,9 +147,9 @@ std::string verify_html(const VerifyReport& report)
     html += p_value_plots(r.study.last());
     html += error_plots(r);
     html += look_table(r.study);
-    html += fmt::format("<p>mote {}, scene hash {:016x}, seed {}.</p>\n</body></html>\n",
-                        html_text(report.version), r.hash, r.params.seed);
-    return html;
+    html += fmt::format("<p>mote {}, scene hash {:016x}, seed {}.</p>\n", html_text(report.version),
+                        r.hash, r.params.seed);
+    return html + page_end();
 }
 
 }  // namespace mote

@@ -154,6 +154,10 @@ std::string verify_text(const VerifyReport& report)
                             tile.column, tile.row, tile.channel, tile.tested, tile.reference,
                             tile.t, tile.p);
     }
+    text += fmt::format(
+        "\nsamples dropped as NaN or infinite 0, densities above their majorants 0, paths ended by "
+        "the scene's limit of events {}\n",
+        r.truncated_paths);
     if (r.errors.single_runs > 0) text += error_lines(r.errors);
     if (r.temporal) text += temporal_lines(*r.temporal);
     return text;

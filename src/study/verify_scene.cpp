@@ -26,7 +26,8 @@ constexpr double most_passes = 64.0;
 constexpr double temporal_share = 0.1;
 
 const std::vector<std::string> part_names{"volume_direct", "volume_indirect", "volume_emission",
-                                          "background", "transmittance"};
+                                          "direct",        "indirect",        "emission",
+                                          "background",    "transmittance"};
 
 double seconds_since(std::chrono::steady_clock::time_point start)
 {
@@ -56,7 +57,8 @@ struct Setup {
     std::vector<std::string> parts;  ///< layers that show anything
     Method tested;
     Method reference;
-    int passes = 1;  ///< of the tested method, per frame
+    int passes = 1;               ///< of the tested method, per frame
+    int64_t truncated_paths = 0;  ///< so far
 
     void say(const std::string& line) const
     {
@@ -72,6 +74,20 @@ RenderDescription settings_of(const Setup& setup, const Method& method, int samp
     return render;
 }
 
+/// What no statistics are needed for.
+void require_sound(const FrameStats& stats, uint32_t seed)
+{
+    if (stats.dropped_non_finite > 0) {
+        throw Error(ExitCode::BiasFound, fmt::format("seed {}: {} samples were NaN or infinite",
+                                                     seed, stats.dropped_non_finite));
+    }
+    if (stats.tracking.majorant_violations > 0) {
+        throw Error(ExitCode::BiasFound,
+                    fmt::format("seed {}: {} densities were above their majorants", seed,
+                                stats.tracking.majorant_violations));
+    }
+}
+
 /// Runs of a method, each of which is the plan's last frame from empty history.
 RunSource source_of(Setup& setup, const Method& method, int samples)
 {
@@ -84,10 +100,8 @@ RunSource source_of(Setup& setup, const Method& method, int samples)
                     render.estimator == EstimatorKind::Restir ? &setup.caches : nullptr,
                     [&](size_t, const LayeredImage& image, const FrameStats& stats) {
                         last = image;
-                        if (stats.dropped_non_finite == 0) return;
-                        throw Error(ExitCode::BiasFound,
-                                    fmt::format("seed {}: {} samples were NaN or infinite", seed,
-                                                stats.dropped_non_finite));
+                        setup.truncated_paths += stats.truncated_paths;
+                        require_sound(stats, seed);
                     });
         return last;
     };
@@ -180,7 +194,7 @@ int reference_samples(const ShortRuns& tested, const ShortRuns& reference)
 
 int frames_of(const Setup& setup, const Method& method)
 {
-    return method.keeps_history ? static_cast<int>(setup.plan.frames.size()) : 1;
+    return frames_rendered(setup.plan, method.keeps_history);
 }
 
 /// Frames before the one compared: an animation may have fewer than asked for.
@@ -226,7 +240,7 @@ VerifyResult verify_scene(const SceneDescription& scene, const VerifyParams& par
     result.mode = is_animated(scene) ? BenchMode::Moving : BenchMode::Static;
     result.params = params.study;
 
-    Setup setup{scene, params, hooks, {}, {}, {}, part_names, {}, {}, 1};
+    Setup setup{scene, params, hooks, {}, {}, {}, part_names, {}, {}, 1, 0};
     setup.tested = params.method.empty() ? own_method() : find_method(params.method);
     SceneCache scene_cache;
     setup.plan = plan_frames(scene, result.mode, result.frame, {result.warm_up, 1}, scene_cache);
@@ -236,8 +250,9 @@ VerifyResult verify_scene(const SceneDescription& scene, const VerifyParams& par
     setup.tested.keeps_history = history_matters(setup, setup.tested);
 
     const RenderDescription tested_settings = settings_of(setup, setup.tested, setup.passes);
-    const bool is_biased =
-        tested_settings.estimator == EstimatorKind::Restir && !is_unbiased(tested_settings.restir);
+    const bool is_biased = tested_settings.estimator == EstimatorKind::March ||
+                           (tested_settings.estimator == EstimatorKind::Restir &&
+                            !is_unbiased(tested_settings.restir));
     if (is_biased) result.params.question.equivalence = true;
     setup.say(fmt::format("short runs of {} and {}", setup.tested.name, setup.reference.name));
     setup.passes = std::max(params.passes, 1);
@@ -272,6 +287,7 @@ VerifyResult verify_scene(const SceneDescription& scene, const VerifyParams& par
         result.study.reference_mean.run_count < 2) {
         return result;
     }
+    result.truncated_paths = setup.truncated_paths;
     result.errors = measure_errors(result.study);
     result.temporal = temporal_of(setup, result);
     return result;

@@ -50,6 +50,7 @@ struct VerifyResult {
     EstimatorInfo reference;
     StudyParams params;  ///< as they were used
     Study study;
+    int64_t truncated_paths = 0;  ///< ended by the scene's limit of events, both estimators
     ErrorFigures errors;
     std::optional<TemporalFigures> temporal;
 };

@@ -130,7 +130,8 @@ TEST(BenchCommand, QuickMeasuresWritesAndCompares)
     const std::string json = folder.file("a.json");
     const std::string csv = folder.file("a.csv");
     const std::string table = bench({scene, "--quick", "--resolution", "32x18", "--runs", "2",
-                                     "--time-budget", "0.5", "--json", json, "--csv", csv});
+                                     "--time-budget", "0.5", "--json", json, "--csv", csv, "--html",
+                                     folder.file("a.html"), "--svg", folder.file("plots")});
     EXPECT_TRUE(contains(table, "32 x 18 pixels, frame 5")) << table;
     EXPECT_TRUE(contains(table, "path-exact")) << table;
 
@@ -141,12 +142,18 @@ TEST(BenchCommand, QuickMeasuresWritesAndCompares)
     EXPECT_EQ(measured.at("modes").size(), 2u);
     EXPECT_GT(measured.at("reference").at("mean"), 0.0);
     for (const auto& mode : measured.at("modes")) {
+        const bool is_still = mode.at("mode") == "still";
         double best = 0.0;
         for (const auto& row : mode.at("methods")) {
             EXPECT_EQ(row.at("runs").size(), 2u);
             EXPECT_EQ(row.at("non_finite"), 0);
             EXPECT_GT(row.at("figures").at("cpu_us"), 0.0);
-            EXPECT_GT(row.at("figures").at("n_var"), 0.0);
+            const bool has_noise = row.at("name") != "march";
+            EXPECT_EQ(row.at("figures").at("n_var") > 0.0, has_noise);
+            EXPECT_EQ(row.at("curve").size(), is_still ? 2u : 0u);  // 1 and 4 times the samples
+            EXPECT_EQ(row.at("memory_bytes").at("film"), 32 * 18 * 4 * 4);
+            const auto& work = row.at("work");  // the preview, too, walks its camera rays
+            EXPECT_GT(work.at("lookups").get<double>() + work.at("cells").get<double>(), 0.0);
             const auto& ratio = row.at("figures").at("ratio");
             const bool judges = row.at("is_reference").get<bool>();
             if (judges && ratio.is_number()) best = std::max(best, ratio.get<double>());
@@ -154,6 +161,14 @@ TEST(BenchCommand, QuickMeasuresWritesAndCompares)
         EXPECT_DOUBLE_EQ(best, 1.0);
     }
     EXPECT_TRUE(contains(read_bytes(csv), "still,path-exact,32,18,5,"));
+
+    const std::string html = read_bytes(folder.file("a.html"));
+    EXPECT_TRUE(contains(html, "<svg"));
+    EXPECT_TRUE(contains(html, "us to 1%"));
+    EXPECT_FALSE(contains(html, "src="));
+    EXPECT_FALSE(contains(html, "href="));
+    EXPECT_TRUE(contains(read_bytes(folder.file("plots/a-still.svg")), "path-exact"));
+    EXPECT_TRUE(contains(read_bytes(folder.file("plots/a-static.svg")), "xmlns"));
 
     const std::string changes = bench({json, "--against", json});
     EXPECT_TRUE(contains(changes, "path-exact")) << changes;

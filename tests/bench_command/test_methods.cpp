@@ -47,8 +47,20 @@ TEST(Methods, TheLightsOfTheSceneDecideWhatIsMeasured)
     EXPECT_EQ(many.size(), 12u);
     EXPECT_EQ(many.front(), "path-power");
     // The preview is the closed form of lights at infinity alone.
-    EXPECT_EQ(names_of(choose_methods("", {false, false, true})).back(), "restir-preview");
-    EXPECT_EQ(names_of(choose_methods("", {false, true, true})).back(), "restir-textbook");
+    const auto is_measured = [](const char* name, const SceneTraits& traits) {
+        const Names names = names_of(choose_methods("", traits));
+        return std::find(names.begin(), names.end(), name) != names.end();
+    };
+    EXPECT_TRUE(is_measured("restir-preview", {false, false, true}));
+    EXPECT_FALSE(is_measured("restir-preview", {false, true, true}));
+    EXPECT_TRUE(is_measured("restir-constant-mis", {false, true, true}));
+    EXPECT_TRUE(is_measured("restir-both", {false, true, true}));
+    EXPECT_FALSE(is_measured("restir-both", {false, false, true}));
+    EXPECT_TRUE(is_measured("restir-both", {false, false, true, true}));
+    EXPECT_FALSE(is_measured("restir-constant-mis", {false, false, true}));
+    EXPECT_TRUE(is_measured("march", {false, true, true, false, false, 2}));
+    EXPECT_FALSE(is_measured("march", {false, true, true, false, false, 1000}));
+    EXPECT_FALSE(is_measured("march", {false, true, true, true, false, 2}));
 }
 
 TEST(Methods, AreChosenByNameAndBeginning)
@@ -80,9 +92,21 @@ TEST(Methods, EditTheSettingsTheyAreNamedFor)
     EXPECT_EQ(render.estimator, EstimatorKind::Path);
 }
 
+TEST(Methods, AreCalledBiasedWhereTheSettingsAre)
+{
+    for (const Method& method : all_methods()) {
+        RenderDescription render;
+        method.edit(render);
+        const bool is_right =
+            render.estimator == EstimatorKind::Path ||
+            (render.estimator == EstimatorKind::Restir && is_unbiased(render.restir));
+        EXPECT_EQ(method.is_biased, !is_right) << method.name;
+    }
+}
+
 TEST(Methods, RowsTakeEqualTimes)
 {
-    const std::vector<Pilot> pilots{{1.0, 1.0}, {2.0, 1.0}, {0.5, 1.0}};
+    const std::vector<Pilot> pilots{{1.0, 0.0, 1.0}, {2.0, 0.0, 1.0}, {0.5, 0.0, 1.0}};
     const Method open = method_of(true, 0);
     // Nobody sets the time: four samples of the slowest row.
     EXPECT_EQ(equal_time_samples({open, open, open}, pilots, 0), (std::vector<int>{8, 4, 16}));
@@ -91,26 +115,27 @@ TEST(Methods, RowsTakeEqualTimes)
     const Method fixed = method_of(false, 3);
     EXPECT_EQ(equal_time_samples({open, fixed, open}, pilots, 0), (std::vector<int>{6, 3, 12}));
     EXPECT_EQ(equal_time_samples({open, fixed, open}, pilots, 5), (std::vector<int>{5, 3, 5}));
-    EXPECT_EQ(equal_time_samples({open}, {{1e-300, 1.0}}, 0).size(), 1u);
+    EXPECT_EQ(equal_time_samples({open}, {{1e-300, 0.0, 1.0}}, 0).size(), 1u);
 }
 
 TEST(Methods, TheReferenceIsTheBestPathTracer)
 {
-    const std::vector<Pilot> pilots{{1.0, 4.0}, {2.0, 1.0}, {0.1, 0.1}};
+    const std::vector<Pilot> pilots{{1.0, 0.0, 4.0}, {2.0, 0.0, 1.0}, {0.1, 0.0, 0.1}};
     const Method path = method_of(true, 0);
     EXPECT_EQ(best_reference_row({path, path, method_of(false, 0)}, pilots), 1);
-    EXPECT_EQ(best_reference_row({method_of(false, 0)}, {{1.0, 1.0}}), -1);
+    EXPECT_EQ(best_reference_row({method_of(false, 0)}, {{1.0, 0.0, 1.0}}), -1);
 }
 
 TEST(Methods, OnlyHopelessPathTracersAreLeftOut)
 {
     // Variance times time: 1, 2.9, 3.1, and 100 of a row that is no reference.
-    const std::vector<Pilot> pilots{{1.0, 1.0}, {1.0, 2.9}, {3.1, 1.0}, {10.0, 10.0}};
+    const std::vector<Pilot> pilots{
+        {1.0, 0.0, 1.0}, {1.0, 0.0, 2.9}, {3.1, 0.0, 1.0}, {10.0, 0.0, 10.0}};
     const Method path = method_of(true, 0);
     const Method other = method_of(false, 1);
     EXPECT_EQ(worth_measuring({path, path, path, other}, pilots),
               (std::vector<bool>{true, true, false, true}));
-    EXPECT_EQ(worth_measuring({other}, {{10.0, 10.0}}), std::vector<bool>{true});
+    EXPECT_EQ(worth_measuring({other}, {{10.0, 0.0, 10.0}}), std::vector<bool>{true});
 }
 
 TEST(Modes, FollowWhatMoves)
@@ -148,10 +173,48 @@ TEST(Modes, AllShowTheSameFrameLast)
     const auto grid = [](const Scene& s) { return s.media.volumes.front().density.get(); };
     EXPECT_EQ(grid(rest.frames.front()), grid(rest.frames.back()));
     EXPECT_NE(grid(moving.frames.front()), grid(moving.frames.back()));
+    const FramePlan mean = plan_frames(scene, BenchMode::Accumulated, 10, counts, cache);
+    EXPECT_EQ(mean.frames.size(), 5u);  // two compared after three
+    EXPECT_EQ(mean.compared, 2);
+    EXPECT_EQ(grid(mean.frames.front()), grid(mean.frames.back()));
+    EXPECT_EQ(frames_rendered(mean, true), 5);
+    EXPECT_EQ(frames_rendered(mean, false), 2);
+    EXPECT_EQ(frames_rendered(rest, false), 1);
     for (const FramePlan* plan : {&still, &rest, &moving}) {
         EXPECT_EQ(plan->frames.back().frame, 10);
         EXPECT_EQ(plan->frames.front().frame, 11 - static_cast<int>(plan->frames.size()));
     }
+}
+
+TEST(Modes, CameraTravelsAroundItsFocusToTheFrameCompared)
+{
+    SceneDescription scene;
+    scene.camera.position = Vec3d(1.0, 2.0, 5.0);
+    scene.camera.look_at = Vec3d(0.0, 1.0, 0.0);
+    ProceduralParams puff;
+    puff.voxel_size = 0.2f;
+    puff.evolve = 1.0f;
+    scene.volumes.emplace_back().procedural = puff;
+    SceneCache cache;
+    const FramePlan plan = plan_frames(scene, BenchMode::Camera, 10, {3, 2}, cache);
+    ASSERT_EQ(plan.frames.size(), 4u);
+    const auto place = [&](size_t i) {
+        return plan.frames[i].camera.world_from_camera.keys.front().translate;
+    };
+    EXPECT_EQ(place(3), scene.camera.position);
+    const double radius = glm::length(scene.camera.position - scene.camera.look_at);
+    for (size_t i = 0; i < 4; ++i) {
+        EXPECT_NEAR(glm::length(place(i) - scene.camera.look_at), radius, 1e-5);  // float focus
+        const std::optional<Vec2> film =
+            project(plan.frames[i].camera, Vec3(scene.camera.look_at), 0.0f);
+        ASSERT_TRUE(film);
+        EXPECT_NEAR(film->x, 0.5f * static_cast<float>(plan.frames[i].camera.width), 1e-2f);
+        EXPECT_EQ(plan.frames[i].media.volumes.front().density,
+                  plan.frames[3].media.volumes.front().density);
+    }
+    // Three steps of one degree at the circle's radius, which here is the distance.
+    EXPECT_NEAR(glm::length(place(0) - place(3)),
+                2.0 * radius * std::sin(0.5 * glm::radians(3.0 * camera_step)), 1e-4);
 }
 
 }  // namespace mote

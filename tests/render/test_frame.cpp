@@ -246,6 +246,31 @@ TEST(Frame, PathsCutByTheBounceLimitAreCounted)
     EXPECT_EQ(stats.truncated_paths, 0);
 }
 
+TEST(Frame, WorkIsCountedTheSameForAnyThreads)
+{
+    const Scene scene = slab_scene(0.7f);
+    for (const EstimatorKind estimator : {EstimatorKind::Path, EstimatorKind::Restir}) {
+        RenderDescription with = options(2, 3, {}).render;
+        with.estimator = estimator;
+        const auto work = [&](int threads) {
+            FrameStats stats;
+            FrameHistory history;
+            run_with_threads(threads, [&] {
+                (void)render_frame(scene, with, OutputDescription{}, history, nullptr, stats);
+            });
+            EXPECT_GT(stats.memory.grids, 0u);
+            EXPECT_EQ(stats.memory.film, scene.camera.width * scene.camera.height * 4u * 4u);
+            EXPECT_EQ(stats.tracking.majorant_violations, 0);
+            const TrackingCounts& t = stats.tracking;
+            return std::vector<int64_t>{t.free_flights, t.shadow_rays, t.lookups, t.closed_bricks,
+                                        stats.cells};
+        };
+        const std::vector<int64_t> one = work(1);
+        EXPECT_GT(one[0], 0);
+        EXPECT_EQ(one, work(3));
+    }
+}
+
 TEST(Frame, StopsBetweenTiles)
 {
     const Options o = options(1, 1, {});

@@ -8,8 +8,8 @@
 #include "app/commands.h"
 #include "app/verify_options.h"
 #include "image/png.h"
+#include "plots/svg.h"
 #include "study/pictures.h"
-#include "study/svg.h"
 #include "support/expect_error.h"
 #include "support/temporary_folder.h"
 
@@ -134,6 +134,37 @@ TEST_F(VerifyCommand, NoBiasIs0WithFiguresAndPictures)
     for (const std::string& bytes : pictures) {
         const Buffer2D<Spectrum> picture = read_png(folder.write("picture.png", bytes));
         EXPECT_TRUE(picture.width() == 24 || picture.width() == 3) << picture.width();
+    }
+}
+
+TEST_F(VerifyCommand, PartsOfSurfacesAreJudgedWhereThereAreAny)
+{
+    const std::string json = folder.file("room.json");
+    const Names arguments{MOTE_SOURCE_DIR "/scenes/room_smoke.toml",
+                          "--method",
+                          "path-exact",
+                          "--reference",
+                          "path",
+                          "--resolution",
+                          "12x12",
+                          "--passes",
+                          "1",
+                          "--set",
+                          "volumes.smoke.procedural.voxel_size=0.1",
+                          "--runs",
+                          "6",
+                          "--json",
+                          json};
+    // Six runs are too few to say; what was looked at is written all the same.
+    expect_error([&] { (void)verify(arguments); }, ExitCode::NotEnoughRuns, {"room_smoke"});
+    std::string names;
+    const nlohmann::json figures = read_json(json);
+    EXPECT_EQ(figures.at("counters").at("majorant_violations"), 0);
+    for (const auto& channel : figures.at("channels")) {
+        names += channel.at("name").get<std::string>() + " ";
+    }
+    for (const char* part : {"volume_direct.R", "direct.G", "indirect.B", "emission.R"}) {
+        EXPECT_TRUE(contains(" " + names, std::string(" ") + part + " ")) << names;
     }
 }
 

@@ -1,4 +1,4 @@
-#include "restir/media_extent.h"
+#include "volumes/media_extent.h"
 
 namespace mote {
 

@@ -1,4 +1,4 @@
-#include "study/svg.h"
+#include "plots/svg.h"
 
 #include <algorithm>
 #include <cmath>
