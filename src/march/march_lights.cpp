@@ -10,7 +10,26 @@ constexpr int sky_looks = 16;
 
 MarchLight point_light(Vec3 position, Spectrum intensity)
 {
-    return {false, position, intensity, Vec3(0.0f), false};
+    MarchLight light;
+    light.place = position;
+    light.power = intensity;
+    return light;
+}
+
+MarchLight distant_light(Vec3 direction, Spectrum irradiance)
+{
+    MarchLight light = point_light(direction, irradiance);
+    light.is_distant = true;
+    return light;
+}
+
+MarchLight spot_light(const SpotLight& spot)
+{
+    MarchLight light = point_light(spot.position, spot.intensity);
+    light.axis = spot.direction;
+    light.cos_inner = spot.cos_inner;
+    light.cos_outer = spot.cos_outer;
+    return light;
 }
 
 /// Light of a flat lamp, by its area and normal.
@@ -18,7 +37,10 @@ MarchLight flat_light(Vec3 centre, Vec3 area, Spectrum radiance, bool two_sided)
 {
     const float size = glm::length(area);
     if (!(size > 0.0f)) return point_light(centre, Spectrum(0.0f));
-    return {false, centre, size * radiance, area / size, two_sided};
+    MarchLight light = point_light(centre, size * radiance);
+    light.facing = area / size;
+    light.two_sided = two_sided;
+    return light;
 }
 
 MarchLight reduce(const Light& light)
@@ -29,7 +51,9 @@ MarchLight reduce(const Light& light)
             if constexpr (std::is_same_v<Lamp, PointLight>) {
                 return point_light(lamp.position, lamp.intensity);
             } else if constexpr (std::is_same_v<Lamp, DistantLight>) {
-                return {true, lamp.direction, lamp.irradiance, Vec3(0.0f), false};
+                return distant_light(lamp.direction, lamp.irradiance);
+            } else if constexpr (std::is_same_v<Lamp, SpotLight>) {
+                return spot_light(lamp);
             } else if constexpr (std::is_same_v<Lamp, SphereLight>) {
                 return point_light(lamp.position, pi * sqr(lamp.radius) * lamp.radiance);
             } else if constexpr (std::is_same_v<Lamp, QuadLight>) {
@@ -68,7 +92,7 @@ void add_sky(const EnvironmentLight& sky, int bands, std::vector<MarchLight>& li
             sum += environment_radiance(sky, place(u, v));
         }
         const Spectrum mean = sum / static_cast<float>(sky_looks * sky_looks);
-        lights.push_back({true, place(0.5f, 0.5f), solid_angle * mean, Vec3(0.0f), false});
+        lights.push_back(distant_light(place(0.5f, 0.5f), solid_angle * mean));
     }
 }
 
@@ -96,6 +120,9 @@ MarchArrival arrival(const MarchLight& light, Vec3 x)
     if (light.facing != Vec3(0.0f)) {
         cosine = -glm::dot(light.facing, wi);
         cosine = light.two_sided ? std::abs(cosine) : std::max(0.0f, cosine);
+    }
+    if (light.axis != Vec3(0.0f)) {
+        cosine = cone_falloff(glm::dot(light.axis, -wi), light.cos_inner, light.cos_outer);
     }
     return {wi, distance, light.power * (cosine / sqr(distance))};
 }

@@ -13,6 +13,9 @@ struct MarchLight {
     Spectrum power{0.0f};  ///< irradiance [W/m^2], or intensity [W/sr] towards `facing`
     Vec3 facing{0.0f};     ///< intensity falls with the cosine to this normal; 0: none
     bool two_sided = false;
+    Vec3 axis{0.0f};  ///< of a spot's cone, away from it [unit]; 0: shines everywhere
+    float cos_inner = 1.0f;
+    float cos_outer = 1.0f;
 
     bool operator==(const MarchLight&) const = default;
 };

@@ -39,7 +39,7 @@ DirectionTargets targets_of(const Scene& scene, const LightCaches& caches)
     for (const Light& light : scene.lights) {
         out.quads |= std::holds_alternative<QuadLight>(light);
         out.spheres |= std::holds_alternative<SphereLight>(light);
-        out.triangles |= std::holds_alternative<TriangleLight>(light);
+        out.triangles |= scene.surfaces && std::holds_alternative<TriangleLight>(light);
     }
     for (const auto& bricks : caches.emissive) out.emissive_volumes |= bricks.has_value();
     return out;

@@ -15,21 +15,12 @@ std::optional<LightSample> sample(const PointLight& light, Vec3 x, Vec2 /*u*/)
     return LightSample{to_light / distance, distance, light.intensity / distance2, 1.0f, true};
 }
 
-/// Share of a spot's intensity that goes along `direction` [unit].
-float cone_falloff(const SpotLight& light, Vec3 direction)
-{
-    const float cosine = glm::dot(light.direction, direction);
-    if (cosine >= light.cos_inner) return 1.0f;
-    if (!(cosine > light.cos_outer)) return 0.0f;
-    const float t = (cosine - light.cos_outer) / (light.cos_inner - light.cos_outer);
-    return sqr(t) * (3.0f - 2.0f * t);
-}
-
 std::optional<LightSample> sample(const SpotLight& light, Vec3 x, Vec2 u)
 {
     std::optional<LightSample> out = sample(PointLight{light.position, light.intensity}, x, u);
     if (!out) return out;
-    const float falloff = cone_falloff(light, -out->wi);
+    const float falloff =
+        cone_falloff(-glm::dot(light.direction, out->wi), light.cos_inner, light.cos_outer);
     if (!(falloff > 0.0f)) return std::nullopt;
     out->Li *= falloff;
     return out;
@@ -268,6 +259,14 @@ Bounds3 bounds(const TriangleLight& light)
 }
 
 }  // namespace
+
+float cone_falloff(float cosine, float cos_inner, float cos_outer)
+{
+    if (cosine >= cos_inner) return 1.0f;
+    if (!(cosine > cos_outer)) return 0.0f;
+    const float t = (cosine - cos_outer) / (cos_inner - cos_outer);
+    return sqr(t) * (3.0f - 2.0f * t);
+}
 
 std::optional<LightSample> sample_light(const Light& light, Vec3 x, Vec2 u)
 {

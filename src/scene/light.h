@@ -77,6 +77,9 @@ struct EnvironmentLight {
 using Light =
     std::variant<PointLight, DistantLight, SphereLight, QuadLight, TriangleLight, SpotLight>;
 
+/// Share of a spot's intensity at this cosine to its axis.
+[[nodiscard]] float cone_falloff(float cosine, float cos_inner, float cos_outer);
+
 /// Light arriving at a point along one sampled direction.
 struct LightSample {
     Vec3 wi{0.0f};          ///< towards the light [unit]
