@@ -63,7 +63,8 @@ struct TriangleLight {
     Spectrum radiance{1.0f};  ///< textured: its mean over the triangle
     bool two_sided = false;
     float offset = 0.0f;  ///< shadow rays end this far in front of it, clear of its mesh [m]
-    std::shared_ptr<const TriangleEmission> texture;  ///< null: the same radiance everywhere
+    /// Null: the same radiance everywhere.
+    std::shared_ptr<const TriangleEmission> texture = nullptr;
 };
 
 /// Light from all directions: a constant, or radiance times a latitude-longitude image.
