@@ -2,13 +2,14 @@
 
 #include "core/parallel.h"
 #include "restir/coarse_media.h"
-#include "volumes/media_extent.h"
 #include "restir/transmittance_map.h"
+#include "volumes/media_extent.h"
 
 namespace mote {
 
 DirectionTransmittance::DirectionTransmittance(const Media& media,
-                                               const DirectionTransmittanceParams& params)
+                                               const DirectionTransmittanceParams& params,
+                                               const Surfaces* surfaces)
     : hats_{std::max(params.hats.bands, 1), std::max(params.hats.azimuths, 1)}
 {
     const double start = process_cpu_seconds();
@@ -47,6 +48,18 @@ DirectionTransmittance::DirectionTransmittance(const Media& media,
                     const int opposite = hats_.opposite(k);
                     row[k] = maps[i].transmittance(x);
                     if (opposite >= 0) row[opposite] = std::exp(-maps[i].depth_behind(x));
+                }
+            }
+        });
+    }
+    if (surfaces) {
+        parallel_for(slots, 64, [&](size_t begin, size_t end) {
+            for (size_t slot = std::max<size_t>(begin, 1); slot < end; ++slot) {
+                const Vec3 x = lattice_.position(lattice_.nodes[slot]);
+                for (int k = 0; k < hats_.count(); ++k) {
+                    float& T = rows_[slot * row_size_ + static_cast<size_t>(k)];
+                    const Ray ray{x, hats_.centre(k), cache_time};
+                    if (is_occluded(*surfaces, ray, {0.0f, infinity})) T = 0.0f;
                 }
             }
         });

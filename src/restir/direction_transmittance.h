@@ -3,6 +3,7 @@
 #include "restir/cache_stats.h"
 #include "restir/direction_hats.h"
 #include "restir/smoke_lattice.h"
+#include "surfaces/surfaces.h"
 
 namespace mote {
 
@@ -18,12 +19,14 @@ struct DirectionTransmittanceParams {
 /// Transmittance from every place in the smoke towards a set of directions all around: one
 /// TransmittanceMap per pair of opposite directions, through media coarsened to half the distance
 /// between its rays, resampled to the nodes of one lattice. Approximate: see there.
-/// Knows nothing of lights, so it stays valid while the media do. Memory: 4 bytes per active node
-/// and direction.
+/// Surfaces (null: none) are asked by one ray per node and direction.
+/// Knows nothing of lights, so it stays valid while media and surfaces do. Memory: 4 bytes per
+/// active node and direction.
 class DirectionTransmittance {
   public:
     explicit DirectionTransmittance(const Media& media,
-                                    const DirectionTransmittanceParams& params = {});
+                                    const DirectionTransmittanceParams& params = {},
+                                    const Surfaces* surfaces = nullptr);
 
     /// From world point x towards wi [unit], in [0,1], linear between nodes and directions. 1 far
     /// from smoke. Floor it before using it in a target.

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "volumes/media_extent.h"
 #include "restir/media_in_view.h"
 #include "restir/same.h"
+#include "volumes/media_extent.h"
 
 namespace mote {
 namespace {
@@ -26,6 +26,7 @@ struct Builder {
     const CacheSizes& sizes;
     const LightCaches* previous;  ///< null: nothing can be taken over
     bool same_media;
+    bool same_shadows;  ///< media and surfaces both
     LightCaches& out;
 
     void add_distant() const;
@@ -46,14 +47,15 @@ void Builder::add_distant() const
 
 void Builder::add_map(LightCaches::Distant distant) const
 {
-    if (same_media) {
+    if (same_shadows) {
         for (const LightCaches::Distant& old : previous->distant) {
             if (old.direction == distant.direction) distant.map = old.map;
         }
     }
     distant.map ? ++out.reused : ++out.built;
     if (!distant.map) {
-        distant.map = std::make_shared<TransmittanceMap>(scene.media, distant.direction);
+        distant.map = std::make_shared<TransmittanceMap>(
+            scene.media, distant.direction, TransmittanceMapParams{}, scene.surfaces.get());
     }
     out.distant.push_back(std::move(distant));
 }
@@ -81,10 +83,11 @@ void Builder::add_environment() const
         params.hats = {4, 8};
         params.node_spacing = 8.0f * finest_voxel(scene.media);
     }
-    if (same_media) out.directions = previous->directions;
+    if (same_shadows) out.directions = previous->directions;
     out.directions ? ++out.reused : ++out.built;
     if (!out.directions) {
-        out.directions = std::make_shared<DirectionTransmittance>(scene.media, params);
+        out.directions =
+            std::make_shared<DirectionTransmittance>(scene.media, params, scene.surfaces.get());
     }
     const bool same_radiance =
         same_light && previous->environment_radiance.size() ==
@@ -138,8 +141,10 @@ std::shared_ptr<const LightCaches> make_light_caches(
         out->emissive.resize(volumes.size());
         return out;
     }
+    out->surfaces = scene.surfaces;
     const bool same_media = previous && previous->media == out->media;
-    const Builder builder{scene, sizes, previous.get(), same_media, *out};
+    const bool same_shadows = same_media && is_same(previous->surfaces.get(), scene.surfaces.get());
+    const Builder builder{scene, sizes, previous.get(), same_media, same_shadows, *out};
     if (in_view) {
         builder.add_distant();
         builder.add_environment();

@@ -35,6 +35,7 @@ struct LightCaches {
 
     // What they were made from, to tell whether they may stay.
     MediaKey media;
+    std::shared_ptr<const Surfaces> surfaces;
     std::vector<LocalLight> local_lights;
     std::vector<Spectrum> environment_radiance;  ///< mean_radiance()
     std::shared_ptr<const DirectionTransmittance> directions;

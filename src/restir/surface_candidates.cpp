@@ -12,6 +12,9 @@ namespace {
 /// Candidates per lamp where there are few of them, and per light for an environment image.
 constexpr int candidates_per_lamp = 4;
 constexpr int environment_share = 4;
+/// Next to surfaces the caches are at their worst: nodes behind a wall see nothing. What they think
+/// dark must not become rare and bright.
+constexpr float least_known = 0.25f;
 
 /// How many candidates of each kind a surface draws.
 struct Counts {
@@ -61,7 +64,7 @@ struct Drawing {
                          density_per_direction(frame, frame.bsdf_finds, domain.v.p, domain.time, y,
                                                *arrival);
         }
-        c.known = cached_visibility(frame, y, c.x, c.arrival);
+        c.known = std::max(least_known, cached_visibility(frame, y, c.x, c.arrival));
         if (c.density > 0.0f && std::isfinite(c.density)) out.push_back(c);
     }
 

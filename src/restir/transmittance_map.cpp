@@ -1,8 +1,8 @@
 #include "restir/transmittance_map.h"
 
 #include "core/parallel.h"
-#include "volumes/media_extent.h"
 #include "volumes/cell_walk.h"
+#include "volumes/media_extent.h"
 
 namespace mote {
 namespace {
@@ -189,6 +189,22 @@ void add_volume(const Volume& volume, const GridFrame& frame, const Ray& ray,
     writer.finish();
 }
 
+/// Optical depth that lets nothing through.
+constexpr float opaque = 100.0f;
+
+/// Makes the ray's planes behind the first surface opaque, seen from the light, which is `reach`
+/// before the first plane.
+void add_shadow(const Surfaces& surfaces, const Ray& ray, float reach, const RayLattice& lattice,
+                float* depths)
+{
+    const Ray from_light{ray.o - reach * ray.d, ray.d, ray.time};
+    const std::optional<SurfaceHit> hit = intersect(surfaces, from_light, {0.0f, infinity});
+    if (!hit) return;
+    const double z = static_cast<double>(hit->t - reach) / lattice.step;
+    const int first = static_cast<int>(std::clamp(std::ceil(z), 0.0, 1.0 * lattice.count.z));
+    for (int plane = first; plane < lattice.count.z; ++plane) depths[plane] += opaque;
+}
+
 }  // namespace
 
 void TransmittanceMap::clear()
@@ -197,7 +213,7 @@ void TransmittanceMap::clear()
 }
 
 TransmittanceMap::TransmittanceMap(const Media& media, Vec3 wi,
-                                   const TransmittanceMapParams& params)
+                                   const TransmittanceMapParams& params, const Surfaces* surfaces)
 {
     clear();
     const double start = process_cpu_seconds();
@@ -226,6 +242,12 @@ TransmittanceMap::TransmittanceMap(const Media& media, Vec3 wi,
     for (const Volume& volume : media.volumes) {
         if (!is_void(volume)) walked.push_back({&volume, frames_at(volume, cache_time).density});
     }
+    float reach = 0.0f;
+    if (surfaces) {
+        Bounds3 all = surfaces->bvh->bounds();
+        all.extend(centre_);
+        reach = glm::length(all.extent());
+    }
     const glm::dmat3 box_from_lattice = glm::inverse(lattice.from_box);
     const auto columns = static_cast<size_t>(lattice.count.x);
     const size_t rays = columns * static_cast<size_t>(lattice.count.y);
@@ -239,6 +261,7 @@ TransmittanceMap::TransmittanceMap(const Media& media, Vec3 wi,
                 add_volume(*one.volume, one.frame, ray, lattice, params.max_depth,
                            depths_.data() + n * planes_);
             }
+            if (surfaces) add_shadow(*surfaces, ray, reach, lattice, depths_.data() + n * planes_);
         }
     });
     stats_.rays = static_cast<int64_t>(rays);

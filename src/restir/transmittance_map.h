@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "restir/cache_stats.h"
+#include "surfaces/surfaces.h"
 #include "volumes/tracking.h"
 
 namespace mote {
@@ -36,8 +37,10 @@ class TransmittanceMap {
     TransmittanceMap() { clear(); }
 
     /// `wi` points towards the light [unit]. Without media, or for a wi that is no direction,
-    /// nothing is in the way.
-    TransmittanceMap(const Media& media, Vec3 wi, const TransmittanceMapParams& params = {});
+    /// nothing is in the way. Behind surfaces (null: none) it is dark: one ray more per ray of the
+    /// lattice. depth_behind() knows nothing of them.
+    TransmittanceMap(const Media& media, Vec3 wi, const TransmittanceMapParams& params = {},
+                     const Surfaces* surfaces = nullptr);
 
     /// From world point x towards the light, finite, >= 0. Exactly 0 on the light's side of all
     /// media and beside them; the full depth behind them.

@@ -39,9 +39,9 @@ inline LayeredImage direct_light_only(LayeredImage image)
     for (Channel& channel : image.channels) {
         const bool is_black = std::all_of(channel.data.begin(), channel.data.end(),
                                           [](float value) { return value == 0.0f; });
-        const bool is_direct =
-            channel.name.rfind("volume_direct", 0) == 0 || channel.name.rfind("direct", 0) == 0;
-        if (is_direct && !is_black) kept.push_back(std::move(channel));
+        const bool of_media = channel.name.rfind("volume_direct", 0) == 0;
+        const bool of_surfaces = channel.name.rfind("direct", 0) == 0;
+        if (of_media || (of_surfaces && !is_black)) kept.push_back(std::move(channel));
     }
     image.channels = std::move(kept);
     return image;

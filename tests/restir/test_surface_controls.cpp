@@ -173,8 +173,9 @@ TEST_P(SurfaceControlStat, IsRejectedAndTheRightOneIsNot)
     dim.lamp_radiance = 20.0f;
     const RoomFrame before(dim);
     const RoomFrame now((RoomState()));
-    const Verdict verdict = judge(before, now, wrong, 400);
-    const Verdict right = judge(before, now, {"right", Fault::None, wrong.in_time}, 400);
+    constexpr int runs = 4000;
+    const Verdict verdict = judge(before, now, wrong, runs);
+    const Verdict right = judge(before, now, {"right", Fault::None, wrong.in_time}, runs);
     if (std::getenv("MOTE_REPORT"))
         std::printf("%s\n%s\n", verdict.text.c_str(), right.text.c_str());
     EXPECT_LT(verdict.p, alpha) << verdict.text;
