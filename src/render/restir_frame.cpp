@@ -17,6 +17,8 @@ struct TileScratch {
     LightRays rays;
     LightRays surface_rays;
     std::vector<Candidate> candidates;
+    SurfaceChoice choice;
+    std::vector<float> shares;  ///< of surfaces' light that reach the camera
     std::vector<FilmSample> samples;
     std::vector<PixelFilm> pixels;
     PassDomain domain;
@@ -38,11 +40,13 @@ void trace_tile_pass(const PassInputs& inputs, const Tile& tile, uint32_t pass,
                        sample, counts);
             if (inputs.render.path.max_bounces == 0) continue;
             if (scratch.domain.surface.is_sampled()) {
-                scratch.candidates.clear();
-                const PixelReservoir chosen = resample_surface(inputs, key, scratch.domain.surface,
-                                                               scratch.candidates, counts);
-                ask_for_light(frame, scratch.domain.surface, chosen.r, owner, scratch.surface_rays);
-                sample.work.x += static_cast<float>(scratch.candidates.size());
+                const SurfaceDomain& surface = scratch.domain.surface;
+                SurfaceChoice& choice = scratch.choice;
+                resample_surface(inputs, key, surface, choice, counts);
+                ask_for_light(frame, surface, choice.kept.r, owner, scratch.surface_rays);
+                ask_for_lights_apart(surface, choice, owner, scratch.surface_rays);
+                scratch.shares[static_cast<size_t>(owner)] = surface.share;
+                sample.work.x += static_cast<float>(choice.candidates.size());
             }
             PixelDomain& domain = scratch.domain.media;
             if (!frame.has_sampled_lights() || domain.bins.empty()) continue;
@@ -68,7 +72,8 @@ void trace_tile_pass(const PassInputs& inputs, const Tile& tile, uint32_t pass,
     scratch.surface_rays.trace(*frame.scene, counts.light_rays);
     for (size_t i = 0; i < scratch.surface_rays.size(); ++i) {
         FilmSample& sample = scratch.samples[static_cast<size_t>(scratch.surface_rays.owners[i])];
-        sample.surface_direct += scratch.surface_rays.value(i);
+        const float share = scratch.shares[static_cast<size_t>(scratch.surface_rays.owners[i])];
+        sample.surface_direct += share * scratch.surface_rays.value(i);
         sample.exact_rays += 1.0f;
     }
 }
@@ -163,6 +168,7 @@ bool render_independent_passes(const PassInputs& inputs, const FrameControl& con
         const std::optional<FilmSample> uniform = uniform_tile(inputs, tile);
         scratch.samples.resize(pixels, uniform.value_or(FilmSample{}));
         scratch.pixels.resize(pixels);
+        scratch.shares.resize(pixels);
         const auto for_pixels = [&](auto&& f) {
             size_t i = 0;
             for (int y = tile.y0; y < tile.y1; ++y) {

@@ -24,7 +24,8 @@ struct PassBuffers {
     {
         if (!has_surfaces) return;
         surfaces = {Buffer2D<PixelReservoir>(width, height),
-                    Buffer2D<PixelReservoir>(width, height), Buffer2D<Spectrum>(width, height)};
+                    Buffer2D<PixelReservoir>(width, height), Buffer2D<Spectrum>(width, height),
+                    Buffer2D<Spectrum>(width, height)};
     }
     Buffer2D<FilmSample> samples;
     Buffer2D<PixelReservoir> current;
@@ -195,7 +196,7 @@ void ReusingFrame::pass_over_surfaces(const ReusePlan& plan, uint32_t pass,
     if (frame.params.surface.feedback) keep();
     for (size_t i = 0; i < now.surfaces.size(); ++i) {
         buffers.samples.data()[i].surface_direct =
-            now.surfaces.data()[i].share * surfaces.colors.data()[i];
+            now.surfaces.data()[i].share * (surfaces.colors.data()[i] + surfaces.apart.data()[i]);
     }
 }
 

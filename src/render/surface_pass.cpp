@@ -1,19 +1,32 @@
 #include "render/surface_pass.h"
 
+#include <algorithm>
+
 namespace mote {
 
-PixelReservoir resample_surface(const PassInputs& inputs, const PassKey& key,
-                                const SurfaceDomain& domain, std::vector<Candidate>& candidates,
-                                PassCounts& counts)
+void resample_surface(const PassInputs& inputs, const PassKey& key, const SurfaceDomain& domain,
+                      SurfaceChoice& choice, PassCounts& counts)
 {
+    const FrameDomain& frame = inputs.domain;
     Rng rng = pass_rng(inputs, key, Stream::Surface);
     (void)rng.uniform();  // decided whether the surface is sampled
-    const size_t first = candidates.size();
-    draw_surface_candidates(inputs.domain, domain, rng, candidates);
-    counts.candidates += static_cast<int64_t>(candidates.size() - first);
+    std::vector<Candidate>& all = choice.candidates;
+    all.clear();
+    draw_surface_candidates(frame, domain, rng, all);
+    counts.candidates += static_cast<int64_t>(all.size());
     ++counts.surfaces;
+    size_t lamps = all.size();
+    if (frame.params.control_variate) {
+        const auto is_lamp = [&](const Candidate& c) {
+            const SampledLightKind kind = frame.lights[static_cast<size_t>(c.y.light)].kind;
+            return kind == SampledLightKind::Lamp || kind == SampledLightKind::EmissiveVolume;
+        };
+        const auto end = std::stable_partition(all.begin(), all.end(), is_lamp);
+        lamps = static_cast<size_t>(end - all.begin());
+    }
     Spectrum unshadowed;
-    return resample({candidates.data() + first, candidates.size() - first}, rng, unshadowed);
+    choice.kept = resample({all.data(), lamps}, rng, unshadowed);
+    choice.apart = {all.data() + lamps, all.size() - lamps};
 }
 
 void ask_for_light(const FrameDomain& frame, const SurfaceDomain& domain, const Reservoir& r,
@@ -21,8 +34,16 @@ void ask_for_light(const FrameDomain& frame, const SurfaceDomain& domain, const 
 {
     if (!(r.W > 0.0f)) return;
     const Candidate c = evaluate(frame, domain, r.y);
-    rays.add(owner, c.x, c.arrival.wi, c.arrival.distance, domain.time, domain.share * r.W * c.f,
-             infinity);
+    rays.add(owner, c.x, c.arrival.wi, c.arrival.distance, domain.time, r.W * c.f, infinity);
+}
+
+void ask_for_lights_apart(const SurfaceDomain& domain, const SurfaceChoice& choice, int owner,
+                          LightRays& rays)
+{
+    for (const Candidate& c : choice.apart) {
+        rays.add(owner, c.x, c.arrival.wi, c.arrival.distance, domain.time, c.f / c.density,
+                 infinity);
+    }
 }
 
 void fill_surface_reservoirs(const PassInputs& inputs, const Tile& tile, uint32_t pass,
@@ -31,16 +52,21 @@ void fill_surface_reservoirs(const PassInputs& inputs, const Tile& tile, uint32_
 {
     const FrameDomain& frame = inputs.domain;
     LightRays rays;
+    LightRays apart;
     std::vector<PixelReservoir*> owners;
-    std::vector<Candidate> candidates;
+    std::vector<Spectrum*> apart_owners;
+    SurfaceChoice choice;
     for (int y = tile.y0; y < tile.y1; ++y) {
         for (int x = tile.x0; x < tile.x1; ++x) {
             PixelReservoir& own = out.current.at(x, y);
             own = {};
+            out.apart.at(x, y) = Spectrum(0.0f);
             const SurfaceDomain& domain = domains.at(x, y);
             if (!domain.is_sampled()) continue;
-            candidates.clear();
-            own = resample_surface(inputs, {x, y, pass}, domain, candidates, counts);
+            resample_surface(inputs, {x, y, pass}, domain, choice, counts);
+            ask_for_lights_apart(domain, choice, static_cast<int>(apart_owners.size()), apart);
+            apart_owners.push_back(&out.apart.at(x, y));
+            own = choice.kept;
             if (!(own.r.W > 0.0f)) continue;
             const Candidate c = evaluate(frame, domain, own.r.y);
             const auto owner = static_cast<int>(owners.size());
@@ -54,6 +80,10 @@ void fill_surface_reservoirs(const PassInputs& inputs, const Tile& tile, uint32_
         own.f = rays.value(i);
         own.r.p_hat = luminance(own.f);
         if (!(own.r.p_hat > 0.0f)) own.r.W = 0.0f;
+    }
+    apart.trace(*frame.scene, counts.light_rays);
+    for (size_t i = 0; i < apart.size(); ++i) {
+        *apart_owners[static_cast<size_t>(apart.owners[i])] += apart.value(i);
     }
     for (int y = tile.y0; y < tile.y1; ++y) {
         for (int x = tile.x0; x < tile.x1; ++x) {

@@ -5,23 +5,36 @@
 
 namespace mote {
 
-/// Draws a surface's candidates into `candidates` (appended) and chooses one: the target is its
-/// unshadowed light times what the caches know of its shadow. The reservoir's f has no shadow.
-[[nodiscard]] PixelReservoir resample_surface(const PassInputs& inputs, const PassKey& key,
-                                              const SurfaceDomain& domain,
-                                              std::vector<Candidate>& candidates,
-                                              PassCounts& counts);
+/// What a surface's candidates were resampled to, and what that takes; reused from pixel to pixel.
+struct SurfaceChoice {
+    PixelReservoir kept;                ///< one of all lamps and glowing media: may be reused
+    std::vector<Candidate> candidates;  ///< all that were drawn
+    /// Those of lights at infinity: little is gained by reusing them, and much lost by having to
+    /// choose between them, so they are shaded all. None without params.control_variate: then they
+    /// compete with the lamps.
+    std::span<const Candidate> apart;
+};
 
-/// Asks for the shadow ray of a surface's reservoir; it brings the surface's direct light as the
-/// camera sees it.
+/// Draws a surface's candidates and chooses among them: the target is the unshadowed light times
+/// what the caches know of its shadow. The reservoirs' f have no shadow.
+void resample_surface(const PassInputs& inputs, const PassKey& key, const SurfaceDomain& domain,
+                      SurfaceChoice& choice, PassCounts& counts);
+
+/// Asks for the shadow ray of a surface's reservoir; it brings its light, media in front of the
+/// surface apart.
 void ask_for_light(const FrameDomain& frame, const SurfaceDomain& domain, const Reservoir& r,
                    int owner, LightRays& rays);
+
+/// The same of the lights that are shaded all.
+void ask_for_lights_apart(const SurfaceDomain& domain, const SurfaceChoice& choice, int owner,
+                          LightRays& rays);
 
 /// Surfaces of a pass under way, as reuse needs them; none if the scene has none.
 struct SurfaceBuffers {
     Buffer2D<PixelReservoir> current;
     Buffer2D<PixelReservoir> next;
-    Buffer2D<Spectrum> colors;  ///< direct light of the surfaces, media in front of them apart
+    Buffer2D<Spectrum> colors;  ///< light of the reservoirs, media in front of the surface apart
+    Buffer2D<Spectrum> apart;   ///< the same of lights that have none
 };
 
 /// The surfaces' own reservoirs of a tile, each with its exact shadow: targets of reuse have them.

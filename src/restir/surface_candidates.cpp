@@ -9,9 +9,8 @@
 namespace mote {
 namespace {
 
-/// Candidates per lamp where there are few of them, and per light for an environment image.
+/// Candidates per lamp where there are few of them.
 constexpr int candidates_per_lamp = 4;
-constexpr int environment_share = 4;
 /// Next to surfaces the caches are at their worst: nodes behind a wall see nothing. What they think
 /// dark must not become rare and bright.
 constexpr float least_known = 0.25f;
@@ -31,12 +30,12 @@ Counts counts_for(const FrameDomain& frame)
         static_cast<int>(std::min<size_t>(frame.caches->local_lights.size(), size_t{1} << 20));
     if (frame.samples_local)
         n.local = std::min(params.light_candidates, candidates_per_lamp * lamps);
-    const auto& environment = frame.scene->environment;
-    // A constant one is found by the BSDF's directions.
-    if (environment && environment->map) {
-        n.environment = std::max(1, params.light_candidates / environment_share);
-    }
     if (frame.bsdf_finds.any()) n.bsdf = params.bsdf_candidates;
+    // A constant environment is found by the BSDF's directions alone.
+    const auto& environment = frame.scene->environment;
+    if (!environment) return n;
+    n.bsdf = std::max(n.bsdf, frame.params.environment_rays);
+    if (environment->map) n.environment = std::max(1, frame.params.environment_rays / 2);
     return n;
 }
 

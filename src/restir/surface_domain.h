@@ -40,10 +40,11 @@ struct SurfaceEnd {
 /// which the BSDF's own sampling draws the direction.
 float light_surface(const SurfaceDomain& domain, const Arrival& arrival, Candidate& c);
 
-/// Draws params.surface.light_candidates lights (fewer where there are few lamps) with a point
-/// each, every distant light, and params.surface.bsdf_candidates directions from the BSDF, which
-/// meet what they meet; all weighted against each other by the balance heuristic. Candidates that
-/// bring nothing are left out. Their `known` is what the caches know of shadows. Appends to `out`.
+/// Draws params.surface.light_candidates lamps (fewer where there are few) with a point each, every
+/// distant light, and params.surface.bsdf_candidates directions from the BSDF, which meet what they
+/// meet; with an environment environment_rays of those, and half as many from its image; all
+/// weighted against each other by the balance heuristic. Candidates that bring nothing are left
+/// out. Their `known` is what the caches know of shadows. Appends to `out`.
 void draw_surface_candidates(const FrameDomain& frame, const SurfaceDomain& domain, Rng& rng,
                              std::vector<Candidate>& out);
 
