@@ -44,8 +44,7 @@ Spectrum seen_background(const PassInputs& inputs, const PixelDomain& domain, fl
     if (scene.environment && !domain.surface) {
         sum += transmittance * environment_radiance(*scene.environment, domain.ray.d);
     }
-    if (!inputs.lights.has_surfaces()) return sum;
-    inputs.lights.for_each_lamp_on_ray(domain.ray, [&](int index) {
+    inputs.domain.lamp_surfaces->for_each_on_ray(domain.ray, [&](int index) {
         const Light& light = scene.lights[static_cast<size_t>(index)];
         const std::optional<LightHit> hit = hit_light(light, domain.ray.o, domain.ray.d);
         if (hit && hit->distance <= domain.t_end()) {
@@ -193,7 +192,7 @@ std::optional<FilmSample> uniform_tile(const PassInputs& inputs, const Tile& til
 {
     const Scene& scene = *inputs.domain.scene;
     const bool varies = (scene.environment && scene.environment->map) ||
-                        inputs.lights.has_surfaces() || scene.surfaces ||
+                        !inputs.domain.lamp_surfaces->is_empty() || scene.surfaces ||
                         inputs.aovs.needs_motion();
     if (varies || media_in_view(scene, tile)) return std::nullopt;
     FilmSample sample;

@@ -22,7 +22,7 @@ struct PassInputs {
     const FrameDomain& domain;
     const RenderDescription& render;
     AovSet aovs;
-    const LightSampler& lights;  ///< finds lamps that rays meet, and lights paths of many events
+    const LightSampler& lights;  ///< for paths of many events; empty if there are none
 };
 
 /// One pixel's pass: where, and which.

@@ -188,7 +188,13 @@ LayeredImage render_frame(const Scene& scene, const RenderDescription& render,
     if (scene.surfaces && render.estimator == EstimatorKind::March) {
         throw Error(ExitCode::Input, "the ray marcher cannot render [[objects]]; use \"path\"");
     }
-    const FrameInputs frame{scene, render, aovs, build_light_sampler(scene, render.path)};
+    // A million lamps take a second to sort; only paths of their own need that.
+    const bool follows_paths =
+        render.estimator == EstimatorKind::Path ||
+        (render.estimator == EstimatorKind::Restir && render.path.max_bounces > 1);
+    const FrameInputs frame{
+        scene, render, aovs,
+        follows_paths ? build_light_sampler(scene, render.path) : LightSampler()};
     const Camera& camera = scene.camera;
     const FrameControl control{stop, tile_done};
     Film film(camera.width, camera.height, aovs, output.color_type);

@@ -6,7 +6,7 @@ namespace mote {
 namespace {
 
 /// More clusters than this would not make distributions over at most a few dozen of them better.
-constexpr size_t most_leaves = 65536;
+constexpr size_t most_leaves = 16384;
 
 /// Of a light, what sorting looks at.
 struct Place {

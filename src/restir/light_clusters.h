@@ -41,7 +41,7 @@ struct LightClusters {
 };
 
 /// Halves the lights at the median of the longest axis, down to single lights, or to groups where
-/// there are more than 65536. Cost: O(n log n), 0.3 s for a million lights.
+/// there are more than 16384. Cost: O(n log n), 0.3 s for a million lights.
 [[nodiscard]] LightClusters make_light_clusters(std::span<const LocalLight> lights);
 
 }  // namespace mote
