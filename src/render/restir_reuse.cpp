@@ -39,14 +39,16 @@ struct PassBuffers {
 struct ReusingFrame {
     const PassInputs& inputs;
     const FrameControl& control;
+    bool reuses_media;  ///< else samples in media are shaded and forgotten
     PassBuffers buffers;
     std::atomic<bool> stopped{false};
     std::mutex mutex;
     PassCounts& counts;
 
-    ReusingFrame(const PassInputs& in, const FrameControl& c, PassCounts& n)
+    ReusingFrame(const PassInputs& in, const ReusePlan& plan, const FrameControl& c, PassCounts& n)
         : inputs(in),
           control(c),
+          reuses_media(plan.temporal || plan.spatial),
           buffers(in.domain.scene->camera.width, in.domain.scene->camera.height,
                   in.domain.scene->surfaces != nullptr),
           counts(n)
@@ -115,13 +117,14 @@ void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, const DomainSto
             if (inputs.render.path.max_bounces == 0) pass_domain.surface.share = 0.0f;
             if (now.surfaces.size() > 0) now.surfaces.at(x, y) = pass_domain.surface;
             const size_t first = candidates.size();
-            if (!domain.bins.empty() && inputs.render.path.max_bounces > 0) {
+            const bool is_lit = frame.has_sampled_lights() && !domain.bins.empty() &&
+                                inputs.render.path.max_bounces > 0;
+            if (is_lit) {
                 weigh_bins(frame, domain);
                 Rng numbers = pass_rng(inputs, key, Stream::Initial);
                 draw_candidates(frame, domain, frame.params.candidates, numbers, candidates);
-            } else {
-                domain.bins.count = 0;  // no event on this ray
             }
+            if (!is_lit || !reuses_media) domain.bins.count = 0;  // no event to remember
             now.domains.store(x, y, domain);
             ranges.push_back({first, candidates.size() - first});
             sample.exact_rays += static_cast<float>(candidates.size() - first);
@@ -131,8 +134,11 @@ void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, const DomainSto
                 if (frame.params.visibility == TargetVisibility::Cached) {
                     candidates[i].f *= cached_visibility(frame, c.y, c.x, c.arrival);
                 } else {
+                    const float tau_max =
+                        reuses_media ? infinity
+                                     : depth_that_matters(c.f / c.density, luminance(sample.L()));
                     shadows.add(static_cast<int>(i), c.x, c.arrival.wi, c.arrival.distance,
-                                domain.ray.time, c.f, infinity);
+                                domain.ray.time, c.f, tau_max);
                 }
             }
         }
@@ -233,7 +239,7 @@ bool render_reusing_passes(const PassInputs& inputs, const ReusePlan& plan,
     const FrameDomain& frame = inputs.domain;
     const int width = frame.scene->camera.width;
     const int height = frame.scene->camera.height;
-    ReusingFrame run(inputs, control, counts);
+    ReusingFrame run(inputs, plan, control, counts);
     PassBuffers& buffers = run.buffers;
     Buffer2D<PixelFilm> pixels(width, height);
     const bool matches =

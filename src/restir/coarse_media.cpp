@@ -1,7 +1,7 @@
 #include "restir/coarse_media.h"
 
-#include "volumes/media_extent.h"
 #include "volumes/brick_builder.h"
+#include "volumes/media_extent.h"
 
 namespace mote {
 namespace {

@@ -20,6 +20,15 @@ float cap_of(const TemporalParams& params, bool still)
 
 }  // namespace
 
+PixelRng after_turn(const PixelRng& rng)
+{
+    return [&rng](int x, int y) {
+        Rng numbers = rng(x, y);
+        (void)numbers.uniform();
+        return numbers;
+    };
+}
+
 void finish_tile(const Tile& tile, const PixelRng& rng, const Combination& combination,
                  const ReuseOutput& out)
 {
@@ -130,14 +139,7 @@ void reuse_in_space(const PassView& pass, const Tile& tile, const PixelRng& rng,
         }
     }
     scratch.trace(*pass.frame.scene, *pass.frame.scene, walks);
-    finish_tile(
-        tile,
-        [&](int x, int y) {
-            Rng numbers = rng(x, y);
-            (void)numbers.uniform();  // the spiral's turn
-            return numbers;
-        },
-        scratch, out);
+    finish_tile(tile, after_turn(rng), scratch, out);
 }
 
 void shade_chosen(const PassView& pass, const Tile& tile, Buffer2D<Spectrum>& colors,

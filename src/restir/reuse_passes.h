@@ -33,6 +33,9 @@ struct Acceptance {
 /// Random numbers of a pixel for one purpose.
 using PixelRng = std::function<Rng(int x, int y)>;
 
+/// The same without each pixel's first number, which has turned the spiral of its neighbours.
+[[nodiscard]] PixelRng after_turn(const PixelRng& rng);
+
 /// Where a reuse pass writes: the pixels of its tile, in both.
 struct ReuseOutput {
     Buffer2D<PixelReservoir>& reservoirs;

@@ -119,14 +119,7 @@ void reuse_surfaces_in_space(const SurfaceView& pass, const Tile& tile, const Pi
         }
     }
     scratch.trace(*pass.frame.scene, *pass.frame.scene, walks);
-    finish_tile(
-        tile,
-        [&](int x, int y) {
-            Rng numbers = rng(x, y);
-            (void)numbers.uniform();  // the spiral's turn
-            return numbers;
-        },
-        scratch, out);
+    finish_tile(tile, after_turn(rng), scratch, out);
 }
 
 }  // namespace mote

@@ -98,7 +98,8 @@ struct ReuseRuns {
     render.estimator = EstimatorKind::Restir;
     const OutputDescription output = direct_light_output();
     FrameStats stats;
-    const bool has_history = restir.reuse == ReuseMode::Temporal || restir.reuse == ReuseMode::Both;
+    render.restir = restir;
+    const bool has_history = uses_history(render);
     for (int run = 0; run < count.runs; ++run) {
         render.seed = count.first_seed + static_cast<uint32_t>(run);
         render.restir = restir;

@@ -75,6 +75,7 @@ std::vector<test::ReuseCase> surface_cases()
         {"temporal", reuse_params(ReuseMode::Temporal, numbers)},
         {"spatial", reuse_params(ReuseMode::Spatial, numbers)},
         {"both", reuse_params(ReuseMode::Both, numbers)},
+        {"auto", reuse_params(ReuseMode::Auto, numbers)},
     };
     // Few pixels: neighbours that are not alike must be among those that take part.
     for (test::ReuseCase& c : cases) c.params.surface.radius_px = 3.0f;
@@ -83,7 +84,7 @@ std::vector<test::ReuseCase> surface_cases()
 
 class SurfaceReuseStat : public testing::TestWithParam<SceneCase> {};
 
-/// Five scenes, four ways each, two tests of each: false once in 2500 sets of seeds.
+/// Five scenes, five ways each, two tests of each: false once in 2000 sets of seeds.
 TEST_P(SurfaceReuseStat, HasTheMeanOfThePathTracer)
 {
     test::expect_unbiased(GetParam(), surface_cases(), {});
