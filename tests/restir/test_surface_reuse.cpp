@@ -18,10 +18,17 @@ std::vector<Scene> rooms(int count, RoomState (*state)(float step))
     return frames;
 }
 
+/// The same scene, meshes included, in frames of their own: nothing has changed.
+std::vector<Scene> still_frames_of(const Scene& scene, int count)
+{
+    std::vector<Scene> frames(static_cast<size_t>(count), scene);
+    for (int i = 0; i < count; ++i) frames[static_cast<size_t>(i)].frame = 1 + i;
+    return frames;
+}
+
 std::vector<Scene> still_rooms(int count)
 {
-    // The same meshes in all frames: nothing has changed.
-    return std::vector<Scene>(static_cast<size_t>(count), test::room());
+    return still_frames_of(test::room(), count);
 }
 
 std::vector<Scene> moving_cameras(int count)
@@ -57,7 +64,7 @@ std::vector<Scene> changing_lights(int count)
 
 std::vector<Scene> courtyards(int count)
 {
-    return std::vector<Scene>(static_cast<size_t>(count), test::courtyard(true));
+    return still_frames_of(test::courtyard(true), count);
 }
 
 const SceneCase scenes[] = {
