@@ -109,7 +109,7 @@ TEST_F(VerifyCommand, NoBiasIs0WithFiguresAndPictures)
     const std::string json = folder.file("new/a.json");
     const std::string page = folder.file("new/a.html");
     const std::string text = verify({scene, "--budget", "2%", "--tile-budget", "0.3", "--warm-up",
-                                     "2", "--time", "60", "--json", json, "--html", page});
+                                     "2", "--time", "600", "--json", json, "--html", page});
     EXPECT_TRUE(contains(text, "no bias found")) << text;
     EXPECT_TRUE(contains(text, "24 x 16 pixels, frame 3 of a scene at rest")) << text;
 
