@@ -81,14 +81,18 @@ void add_sky(const EnvironmentLight& sky, int bands, std::vector<MarchLight>& li
     const int turns = 2 * bands;
     const float solid_angle = 4.0f * pi / static_cast<float>(bands * turns);
     for (int i = 0; i < bands * turns; ++i) {
+        const int band = i / turns;
+        const int turn = i % turns;
         const auto place = [&](float u, float v) {
-            return sky_direction((static_cast<float>(i / turns) + u) / static_cast<float>(bands),
-                                 (static_cast<float>(i % turns) + v) / static_cast<float>(turns));
+            return sky_direction((static_cast<float>(band) + u) / static_cast<float>(bands),
+                                 (static_cast<float>(turn) + v) / static_cast<float>(turns));
         };
         Spectrum sum(0.0f);
         for (int k = 0; k < sky_looks * sky_looks; ++k) {
-            const float u = (static_cast<float>(k / sky_looks) + 0.5f) / sky_looks;
-            const float v = (static_cast<float>(k % sky_looks) + 0.5f) / sky_looks;
+            const int row = k / sky_looks;
+            const int column = k % sky_looks;
+            const float u = (static_cast<float>(row) + 0.5f) / sky_looks;
+            const float v = (static_cast<float>(column) + 0.5f) / sky_looks;
             sum += environment_radiance(sky, place(u, v));
         }
         const Spectrum mean = sum / static_cast<float>(sky_looks * sky_looks);

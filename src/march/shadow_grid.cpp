@@ -45,8 +45,11 @@ ShadowGrid::ShadowGrid(const Media& media, const std::vector<MarchLight>& lights
              node < end * static_cast<size_t>(count_.x); ++node) {
             const auto nx = static_cast<size_t>(count_.x);
             const auto ny = static_cast<size_t>(count_.y);
-            const Vec3 x = lo_ + spacing_ * Vec3(float(node % nx), float(node / nx % ny),
-                                                 float(node / (nx * ny)));
+            const size_t line = node / nx;
+            const size_t slice = line / ny;
+            const Vec3 x =
+                lo_ + spacing_ * Vec3(static_cast<float>(node % nx), static_cast<float>(line % ny),
+                                      static_cast<float>(slice));
             for (size_t i = 0; i < light_count_; ++i) {
                 const MarchArrival a = arrival(lights[i], x);
                 const Ray ray{x, a.wi, cache_time};

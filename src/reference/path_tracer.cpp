@@ -21,7 +21,8 @@ std::optional<SurfaceHit> find_surface(const Scene& scene, const Ray& ray)
     return intersect(*scene.surfaces, ray, {0.0f, infinity});
 }
 
-/// A path under way: the ray it goes on along, what it carries, and the events behind it.
+/// Where a path is followed from: the ray it goes on along, what it carries, and the events behind
+/// it.
 struct PathState {
     LightRay light_ray;
     Spectrum beta{1.0f};
@@ -46,10 +47,13 @@ std::optional<LightRay> scattered_ray(const ScatterEvent& event, Rng& rng, Spect
 
 /// Follows a path and adds what it brings. `segment`: the camera ray, if equiangular sampling takes
 /// part.
-void follow(const TraceContext& context, PathState path,
+void follow(const TraceContext& context, const PathState& start,
             const std::optional<CameraSegment>& segment, Rng& rng, PathResult& result)
 {
-    auto& [light_ray, beta, event_count, first_is_surface] = path;
+    LightRay light_ray = start.light_ray;
+    Spectrum beta = start.beta;
+    int event_count = start.event_count;
+    bool first_is_surface = start.first_is_surface;
     const Scene& scene = context.scene;
     const PathTracerParams& params = context.params;
     const bool has_emission = !context.lights.emissive_volumes().empty();
