@@ -177,7 +177,7 @@ void ReusingFrame::pass_over_surfaces(const ReusePlan& plan, uint32_t pass,
     if (plan.surface_temporal && before.surfaces.size() > 0) {
         const bool still = !change_between(before.frame, frame).any();
         for_tiles([&](const Tile& tile, PassCounts& n) {
-            Combination scratch(temporal_rules(frame.params, still));
+            Combination scratch(surface_rules(temporal_rules(frame.params, still)));
             reuse_surfaces_in_time({frame, now.surfaces, surfaces.current}, before, still, tile,
                                    rng(Stream::SurfaceTemporal, pass), scratch, out, n.light_rays,
                                    n.reuse);
@@ -192,7 +192,7 @@ void ReusingFrame::pass_over_surfaces(const ReusePlan& plan, uint32_t pass,
     if (!frame.params.surface.feedback) keep();
     if (plan.surface_spatial) {
         for_tiles([&](const Tile& tile, PassCounts& n) {
-            Combination scratch(spatial_rules(frame.params));
+            Combination scratch(surface_rules(spatial_rules(frame.params)));
             reuse_surfaces_in_space({frame, now.surfaces, surfaces.current}, tile,
                                     rng(Stream::SurfaceSpatial, pass), scratch, out, n.light_rays,
                                     n.reuse);

@@ -54,6 +54,12 @@ bool is_similar(const SurfaceDomain& own, const SurfaceDomain& other, float dist
            is_alike(own.v.material, other.v.material);
 }
 
+CombineRules surface_rules(CombineRules rules)
+{
+    rules.visibility = TargetVisibility::Exact;
+    return rules;
+}
+
 void reuse_surfaces_in_time(const SurfaceView& pass, const FinishedPass& before, bool still,
                             const Tile& tile, const PixelRng& rng, Combination& scratch,
                             const ReuseOutput& out, WalkCounts& walks, ReuseCounts& counts)

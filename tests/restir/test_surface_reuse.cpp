@@ -83,6 +83,7 @@ std::vector<test::ReuseCase> surface_cases()
         {"spatial", reuse_params(ReuseMode::Spatial, numbers)},
         {"both", reuse_params(ReuseMode::Both, numbers)},
         {"auto", reuse_params(ReuseMode::Auto, numbers)},
+        {"textbook", make_restir_params(RestirPreset::Textbook)},
     };
     // Few pixels: neighbours that are not alike must be among those that take part.
     for (test::ReuseCase& c : cases) c.params.surface.radius_px = 3.0f;
@@ -91,7 +92,7 @@ std::vector<test::ReuseCase> surface_cases()
 
 class SurfaceReuseStat : public testing::TestWithParam<SceneCase> {};
 
-/// Five scenes, five ways each, two tests of each: false once in 2000 sets of seeds.
+/// Five scenes, six ways each, two tests of each: false once in 1600 sets of seeds.
 TEST_P(SurfaceReuseStat, HasTheMeanOfThePathTracer)
 {
     test::expect_unbiased(GetParam(), surface_cases(), {});
