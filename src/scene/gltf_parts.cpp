@@ -35,8 +35,8 @@ struct Placing {
 
 Mat4d Placing::world(double frame) const
 {
-    const Mat4d world = matrix(evaluate(shown.object->transform, frame)) *
-                        world_from_node(file.scene, node, frame / context.description.fps);
+    Mat4d world = matrix(evaluate(shown.object->transform, frame)) *
+                  world_from_node(file.scene, node, frame / context.description.fps);
     for (int c = 0; c < 4; ++c) {
         const double largest = glm::length(Vec3d(world[c]));
         if (largest < 1e9) continue;
