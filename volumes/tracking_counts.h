@@ -10,6 +10,7 @@ namespace mote {
 struct TrackingCounts {
     int64_t free_flights = 0;   ///< media tried for a collision
     int64_t shadow_rays = 0;    ///< media whose transmittance was estimated or integrated
+    int64_t surface_rays = 0;   ///< shadow rays asked of surfaces, by whoever traces them
     int64_t lookups = 0;        ///< density at tentative collisions
     int64_t closed_bricks = 0;  ///< bricks that took part in closed form
     /// Densities above their majorant: such a free flight or transmittance is wrong. Must be 0.
@@ -19,6 +20,7 @@ struct TrackingCounts {
     {
         free_flights += other.free_flights;
         shadow_rays += other.shadow_rays;
+        surface_rays += other.surface_rays;
         lookups += other.lookups;
         closed_bricks += other.closed_bricks;
         majorant_violations += other.majorant_violations;
@@ -26,9 +28,10 @@ struct TrackingCounts {
     /// What was counted since `start`, an earlier copy of the same thread's counts.
     [[nodiscard]] TrackingCounts since(const TrackingCounts& start) const
     {
-        return {free_flights - start.free_flights, shadow_rays - start.shadow_rays,
-                lookups - start.lookups, closed_bricks - start.closed_bricks,
-                majorant_violations - start.majorant_violations};
+        return {
+            free_flights - start.free_flights,   shadow_rays - start.shadow_rays,
+            surface_rays - start.surface_rays,   lookups - start.lookups,
+            closed_bricks - start.closed_bricks, majorant_violations - start.majorant_violations};
     }
 };
 

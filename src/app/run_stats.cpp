@@ -79,6 +79,7 @@ Json to_json(const FrameRecord& r)
     j["majorant_violations"] = r.render.tracking.majorant_violations;
     j["tracking"] = {{"free_flights", r.render.tracking.free_flights},
                      {"shadow_rays", r.render.tracking.shadow_rays},
+                     {"surface_rays", r.render.tracking.surface_rays},
                      {"density_lookups", r.render.tracking.lookups},
                      {"closed_bricks", r.render.tracking.closed_bricks}};
     j["memory_bytes"] = {{"grids", r.render.memory.grids},

@@ -1,10 +1,13 @@
 #include "reference/visibility.h"
 
+#include "volumes/tracking_counts.h"
+
 namespace mote {
 namespace {
 
 bool is_blocked(const Surfaces& surfaces, const ScatterEvent& event, Vec3 wi, float distance)
 {
+    ++tracking_counts.surface_rays;
     Ray ray{ray_origin(event, wi), wi, event.time};
     if (distance < infinity) {
         // From where the ray really starts to where it is to end; distances are rounded, too.

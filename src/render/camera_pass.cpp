@@ -192,9 +192,8 @@ std::optional<FilmSample> uniform_tile(const PassInputs& inputs, const Tile& til
 {
     const Scene& scene = *inputs.domain.scene;
     const bool varies = (scene.environment && scene.environment->map) ||
-                        !inputs.domain.lamp_surfaces->is_empty() || scene.surfaces ||
-                        inputs.aovs.needs_motion();
-    if (varies || media_in_view(scene, tile)) return std::nullopt;
+                        !inputs.domain.lamp_surfaces->is_empty() || inputs.aovs.needs_motion();
+    if (varies || media_in_view(scene, tile) || surfaces_in_view(scene, tile)) return std::nullopt;
     FilmSample sample;
     if (scene.environment) sample.background = scene.environment->radiance;
     return sample;

@@ -5,7 +5,7 @@
 #include "render/aov.h"
 #include "render/film.h"
 #include "restir/control_variate.h"
-#include "restir/media_in_view.h"
+#include "restir/in_view.h"
 #include "restir/pixel_domain.h"
 #include "restir/reuse_passes.h"
 #include "restir/surface_domain.h"
@@ -64,7 +64,7 @@ void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray, in
                 PassDomain& domain, LightRays& rays, FilmSample& sample, PassCounts& counts);
 
 /// What every pass of every pixel of a tile shows, if that is one and the same: a constant
-/// background, or none, and no medium that a ray of the tile may meet.
+/// background, or none, and no medium or surface that a ray of the tile may meet.
 [[nodiscard]] std::optional<FilmSample> uniform_tile(const PassInputs& inputs, const Tile& tile);
 
 /// The random numbers of one purpose in a pixel's pass.

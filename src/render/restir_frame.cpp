@@ -18,7 +18,6 @@ struct TileScratch {
     LightRays surface_rays;
     std::vector<Candidate> candidates;
     SurfaceChoice choice;
-    std::vector<float> shares;  ///< of surfaces' light that reach the camera
     std::vector<FilmSample> samples;
     std::vector<PixelFilm> pixels;
     PassDomain domain;
@@ -45,7 +44,6 @@ void trace_tile_pass(const PassInputs& inputs, const Tile& tile, uint32_t pass,
                 resample_surface(inputs, key, surface, choice, counts);
                 ask_for_light(frame, surface, choice.kept.r, owner, scratch.surface_rays);
                 ask_for_lights_apart(surface, choice, owner, scratch.surface_rays);
-                scratch.shares[static_cast<size_t>(owner)] = surface.share;
                 sample.work.x += static_cast<float>(choice.candidates.size());
             }
             PixelDomain& domain = scratch.domain.media;
@@ -72,8 +70,7 @@ void trace_tile_pass(const PassInputs& inputs, const Tile& tile, uint32_t pass,
     scratch.surface_rays.trace(*frame.scene, counts.light_rays);
     for (size_t i = 0; i < scratch.surface_rays.size(); ++i) {
         FilmSample& sample = scratch.samples[static_cast<size_t>(scratch.surface_rays.owners[i])];
-        const float share = scratch.shares[static_cast<size_t>(scratch.surface_rays.owners[i])];
-        sample.surface_direct += share * scratch.surface_rays.value(i);
+        sample.surface_direct += scratch.surface_rays.value(i);
         sample.exact_rays += 1.0f;
     }
 }
@@ -168,7 +165,6 @@ bool render_independent_passes(const PassInputs& inputs, const FrameControl& con
         const std::optional<FilmSample> uniform = uniform_tile(inputs, tile);
         scratch.samples.resize(pixels, uniform.value_or(FilmSample{}));
         scratch.pixels.resize(pixels);
-        scratch.shares.resize(pixels);
         const auto for_pixels = [&](auto&& f) {
             size_t i = 0;
             for (int y = tile.y0; y < tile.y1; ++y) {

@@ -24,8 +24,7 @@ struct PassBuffers {
     {
         if (!has_surfaces) return;
         surfaces = {Buffer2D<PixelReservoir>(width, height),
-                    Buffer2D<PixelReservoir>(width, height), Buffer2D<Spectrum>(width, height),
-                    Buffer2D<Spectrum>(width, height)};
+                    Buffer2D<PixelReservoir>(width, height), Buffer2D<Spectrum>(width, height)};
     }
     Buffer2D<FilmSample> samples;
     Buffer2D<PixelReservoir> current;
@@ -171,7 +170,7 @@ void ReusingFrame::pass_over_surfaces(const ReusePlan& plan, uint32_t pass,
     const FrameDomain& frame = inputs.domain;
     SurfaceBuffers& surfaces = buffers.surfaces;
     for_tiles([&](const Tile& tile, PassCounts& n) {
-        fill_surface_reservoirs(inputs, tile, pass, now.surfaces, surfaces, n);
+        fill_surface_reservoirs(inputs, tile, pass, now.surfaces, surfaces, buffers.samples, n);
     });
     const ReuseOutput out{surfaces.next, surfaces.colors, buffers.acceptance};
     if (plan.surface_temporal && before.surfaces.size() > 0) {
@@ -201,8 +200,8 @@ void ReusingFrame::pass_over_surfaces(const ReusePlan& plan, uint32_t pass,
     }
     if (frame.params.surface.feedback) keep();
     for (size_t i = 0; i < now.surfaces.size(); ++i) {
-        buffers.samples.data()[i].surface_direct =
-            now.surfaces.data()[i].share * (surfaces.colors.data()[i] + surfaces.apart.data()[i]);
+        buffers.samples.data()[i].surface_direct +=
+            now.surfaces.data()[i].share * surfaces.colors.data()[i];
     }
 }
 

@@ -34,44 +34,48 @@ void ask_for_light(const FrameDomain& frame, const SurfaceDomain& domain, const 
 {
     if (!(r.W > 0.0f)) return;
     const Candidate c = evaluate(frame, domain, r.y);
-    rays.add(owner, c.x, c.arrival.wi, c.arrival.distance, domain.time, r.W * c.f, infinity);
+    rays.add(owner, c.x, c.arrival.wi, c.arrival.distance, domain.time, domain.share * r.W * c.f,
+             infinity);
 }
 
 void ask_for_lights_apart(const SurfaceDomain& domain, const SurfaceChoice& choice, int owner,
                           LightRays& rays)
 {
     for (const Candidate& c : choice.apart) {
-        rays.add(owner, c.x, c.arrival.wi, c.arrival.distance, domain.time, c.f / c.density,
-                 infinity);
+        rays.add(owner, c.x, c.arrival.wi, c.arrival.distance, domain.time,
+                 domain.share / c.density * c.f, infinity);
     }
 }
 
 void fill_surface_reservoirs(const PassInputs& inputs, const Tile& tile, uint32_t pass,
                              const Buffer2D<SurfaceDomain>& domains, SurfaceBuffers& out,
-                             PassCounts& counts)
+                             Buffer2D<FilmSample>& samples, PassCounts& counts)
 {
     const FrameDomain& frame = inputs.domain;
     LightRays rays;
     LightRays apart;
     std::vector<PixelReservoir*> owners;
-    std::vector<Spectrum*> apart_owners;
+    std::vector<FilmSample*> apart_owners;
     SurfaceChoice choice;
     for (int y = tile.y0; y < tile.y1; ++y) {
         for (int x = tile.x0; x < tile.x1; ++x) {
             PixelReservoir& own = out.current.at(x, y);
             own = {};
-            out.apart.at(x, y) = Spectrum(0.0f);
+            out.colors.at(x, y) = Spectrum(0.0f);
             const SurfaceDomain& domain = domains.at(x, y);
             if (!domain.is_sampled()) continue;
             resample_surface(inputs, {x, y, pass}, domain, choice, counts);
+            FilmSample& sample = samples.at(x, y);
+            sample.work.x += static_cast<float>(choice.candidates.size());
             ask_for_lights_apart(domain, choice, static_cast<int>(apart_owners.size()), apart);
-            apart_owners.push_back(&out.apart.at(x, y));
+            apart_owners.push_back(&sample);
             own = choice.kept;
             if (!(own.r.W > 0.0f)) continue;
             const Candidate c = evaluate(frame, domain, own.r.y);
             const auto owner = static_cast<int>(owners.size());
             owners.push_back(&own);
             rays.add(owner, c.x, c.arrival.wi, c.arrival.distance, domain.time, c.f, infinity);
+            sample.exact_rays += 1.0f;
         }
     }
     rays.trace(*frame.scene, counts.light_rays);
@@ -83,12 +87,14 @@ void fill_surface_reservoirs(const PassInputs& inputs, const Tile& tile, uint32_
     }
     apart.trace(*frame.scene, counts.light_rays);
     for (size_t i = 0; i < apart.size(); ++i) {
-        *apart_owners[static_cast<size_t>(apart.owners[i])] += apart.value(i);
+        FilmSample& sample = *apart_owners[static_cast<size_t>(apart.owners[i])];
+        sample.surface_direct += apart.value(i);
+        sample.exact_rays += 1.0f;
     }
     for (int y = tile.y0; y < tile.y1; ++y) {
         for (int x = tile.x0; x < tile.x1; ++x) {
             const PixelReservoir& own = out.current.at(x, y);
-            out.colors.at(x, y) = own.r.W > 0.0f ? own.r.W * own.f : Spectrum(0.0f);
+            if (own.r.W > 0.0f) out.colors.at(x, y) = own.r.W * own.f;
         }
     }
 }

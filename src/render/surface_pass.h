@@ -20,8 +20,7 @@ struct SurfaceChoice {
 void resample_surface(const PassInputs& inputs, const PassKey& key, const SurfaceDomain& domain,
                       SurfaceChoice& choice, PassCounts& counts);
 
-/// Asks for the shadow ray of a surface's reservoir; it brings its light, media in front of the
-/// surface apart.
+/// Asks for the shadow ray of a surface's reservoir; it brings its light as the camera sees it.
 void ask_for_light(const FrameDomain& frame, const SurfaceDomain& domain, const Reservoir& r,
                    int owner, LightRays& rays);
 
@@ -34,12 +33,12 @@ struct SurfaceBuffers {
     Buffer2D<PixelReservoir> current;
     Buffer2D<PixelReservoir> next;
     Buffer2D<Spectrum> colors;  ///< light of the reservoirs, media in front of the surface apart
-    Buffer2D<Spectrum> apart;   ///< the same of lights that have none
 };
 
 /// The surfaces' own reservoirs of a tile, each with its exact shadow: targets of reuse have them.
+/// Lights that are shaded all go into `samples`.
 void fill_surface_reservoirs(const PassInputs& inputs, const Tile& tile, uint32_t pass,
                              const Buffer2D<SurfaceDomain>& domains, SurfaceBuffers& out,
-                             PassCounts& counts);
+                             Buffer2D<FilmSample>& samples, PassCounts& counts);
 
 }  // namespace mote

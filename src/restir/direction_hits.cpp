@@ -8,32 +8,7 @@
 namespace mote {
 namespace {
 
-/// The two numbers for which sample_light returns a point of a quad.
-Vec2 numbers_of(const QuadLight& quad, Vec3 x, Vec3 wi, float distance)
-{
-    const Vec3 normal = glm::cross(quad.edge_u, quad.edge_v);
-    const float inv = 1.0f / glm::dot(normal, normal);
-    const Vec3 q = x + distance * wi - quad.corner;
-    return {glm::dot(glm::cross(q, quad.edge_v), normal) * inv,
-            glm::dot(glm::cross(quad.edge_u, q), normal) * inv};
-}
-
-/// The same of a direction into the cone in which a sphere is seen.
-Vec2 numbers_of(const SphereLight& sphere, Vec3 x, Vec3 wi)
-{
-    const Vec3 to_centre = sphere.position - x;
-    const float distance2 = glm::dot(to_centre, to_centre);
-    const auto one_minus_cos = [](float sin2) {
-        return sin2 / (1.0f + std::sqrt(std::max(0.0f, 1.0f - sin2)));
-    };
-    const Vec3 local = wi * make_frame(to_centre / std::sqrt(distance2));  // by its transpose
-    const float cone = one_minus_cos(sqr(sphere.radius) / distance2);
-    const float u = one_minus_cos(sqr(local.x) + sqr(local.y)) / cone;
-    const float turn = std::atan2(local.y, local.x) / (2.0f * pi);
-    return {u, turn < 0.0f ? turn + 1.0f : turn};
-}
-
-/// The same of a triangle's point by its barycentric coordinates.
+/// The numbers for which sample_light returns a triangle's point of these barycentric coordinates.
 Vec2 numbers_of_triangle(float u, float v)
 {
     const float root = u + v;
@@ -83,11 +58,8 @@ struct Reporter {
         frame.lamp_surfaces->for_each_on_ray(ray, [&](int light) {
             const Light& found = scene.lights[static_cast<size_t>(light)];
             if (!looks_for(finds, found)) return;
-            const std::optional<LightHit> hit = hit_light(found, ray.o, ray.d);
-            if (!hit) return;
-            const auto* quad = std::get_if<QuadLight>(&found);
-            lamp(light, quad ? numbers_of(*quad, ray.o, ray.d, hit->distance)
-                             : numbers_of(std::get<SphereLight>(found), ray.o, ray.d));
+            const std::optional<Vec2> u = light_numbers(found, ray.o, ray.d);
+            if (u) lamp(light, *u);
         });
     }
     void triangle() const

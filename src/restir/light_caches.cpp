@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "restir/media_in_view.h"
+#include "restir/in_view.h"
 #include "restir/same.h"
 #include "volumes/media_extent.h"
 

@@ -3,7 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "volumes/tracking_counts.h"
+
 namespace mote {
+namespace {
+
+constexpr float deepest = 104.0f;  // a float's exp(-tau) is 0 beyond
+
+}  // namespace
 
 void LightRays::clear()
 {
@@ -16,7 +23,7 @@ void LightRays::add(int owner, Vec3 x, Vec3 wi, float distance, float time, Spec
                     float tau_max)
 {
     if (!(max_component(glm::abs(weight)) > 0.0f)) return;
-    queries.push_back({x, distance, wi, time, tau_max});
+    queries.push_back({x, distance, wi, time, std::min(tau_max, deepest)});
     weights.push_back(weight);
     owners.push_back(owner);
 }
@@ -29,6 +36,7 @@ void LightRays::trace(const Scene& scene, WalkCounts& counts)
         return;
     }
     // Media are walked only where no surface is in the way.
+    tracking_counts.surface_rays += static_cast<int64_t>(queries.size());
     std::vector<DepthQuery> open;
     std::vector<size_t> places;
     for (size_t i = 0; i < queries.size(); ++i) {
@@ -46,7 +54,6 @@ void LightRays::trace(const Scene& scene, WalkCounts& counts)
 float depth_that_matters(Spectrum weight, float pixel_luminance)
 {
     constexpr float shallowest = 18.0f;
-    constexpr float deepest = 104.0f;  // a float's exp(-tau) is 0 beyond
     if (!(pixel_luminance > 0.0f)) return deepest;
     const float ratio = 1e7f * max_component(glm::abs(weight)) / pixel_luminance;
     if (!(ratio < 1e30f)) return deepest;

@@ -130,6 +130,16 @@ std::optional<LightHit> hit(const SphereLight& light, Vec3 x, Vec3 wi)
     return LightHit{std::max(0.0f, along - std::sqrt(half_chord2)), light.radiance};
 }
 
+/// Shares of the quad's edges at which a point of its plane lies.
+Vec2 place_on(const QuadLight& light, Vec3 p)
+{
+    const Vec3 normal = glm::cross(light.edge_u, light.edge_v);
+    const Vec3 q = p - light.corner;
+    const float inv_area2 = 1.0f / glm::dot(normal, normal);
+    return {glm::dot(glm::cross(q, light.edge_v), normal) * inv_area2,
+            glm::dot(glm::cross(light.edge_u, q), normal) * inv_area2};
+}
+
 std::optional<LightHit> hit(const QuadLight& light, Vec3 x, Vec3 wi)
 {
     const Vec3 normal = glm::cross(light.edge_u, light.edge_v);
@@ -137,12 +147,36 @@ std::optional<LightHit> hit(const QuadLight& light, Vec3 x, Vec3 wi)
     if (!(light.two_sided ? slope != 0.0f : slope < 0.0f)) return std::nullopt;
     const float distance = glm::dot(light.corner - x, normal) / slope;
     if (!(distance > 0.0f) || !std::isfinite(distance)) return std::nullopt;
-    const Vec3 p = x + distance * wi - light.corner;
-    const float inv_area2 = 1.0f / glm::dot(normal, normal);
-    const float u = glm::dot(glm::cross(p, light.edge_v), normal) * inv_area2;
-    const float v = glm::dot(glm::cross(light.edge_u, p), normal) * inv_area2;
-    if (!(u >= 0.0f && u <= 1.0f && v >= 0.0f && v <= 1.0f)) return std::nullopt;
+    const Vec2 u = place_on(light, x + distance * wi);
+    if (!(u.x >= 0.0f && u.x <= 1.0f && u.y >= 0.0f && u.y <= 1.0f)) return std::nullopt;
     return LightHit{distance, light.radiance};
+}
+
+/// Of lights that rays do not meet.
+template <class L>
+std::optional<Vec2> numbers(const L& /*light*/, Vec3 /*x*/, Vec3 /*wi*/)
+{
+    return std::nullopt;
+}
+
+std::optional<Vec2> numbers(const SphereLight& light, Vec3 x, Vec3 wi)
+{
+    if (!hit(light, x, wi)) return std::nullopt;
+    const Vec3 to_centre = light.position - x;
+    const float distance2 = glm::dot(to_centre, to_centre);
+    const Vec3 local = wi * make_frame(to_centre / std::sqrt(distance2));  // by its transpose
+    const float sin2 = sqr(local.x) + sqr(local.y);
+    const float one_minus_cos_theta = sin2 / (1.0f + std::sqrt(std::max(0.0f, 1.0f - sin2)));
+    const float turn = std::atan2(local.y, local.x) / (2.0f * pi);
+    return Vec2(one_minus_cos_theta / one_minus_cos(light, distance2),
+                turn < 0.0f ? turn + 1.0f : turn);
+}
+
+std::optional<Vec2> numbers(const QuadLight& light, Vec3 x, Vec3 wi)
+{
+    const std::optional<LightHit> found = hit(light, x, wi);
+    if (!found) return std::nullopt;
+    return place_on(light, x + found->distance * wi);
 }
 
 float pdf(const PointLight& /*light*/, Vec3 /*x*/, Vec3 /*wi*/)
@@ -271,6 +305,14 @@ float cone_falloff(float cosine, float cos_inner, float cos_outer)
 std::optional<LightSample> sample_light(const Light& light, Vec3 x, Vec2 u)
 {
     return std::visit([&](const auto& l) { return sample(l, x, u); }, light);
+}
+
+std::optional<Vec2> light_numbers(const Light& light, Vec3 x, Vec3 wi)
+{
+    const std::optional<Vec2> u =
+        std::visit([&](const auto& l) { return numbers(l, x, wi); }, light);
+    if (!u) return u;
+    return glm::clamp(*u, Vec2(0.0f), Vec2(one_minus_epsilon));
 }
 
 float light_pdf(const Light& light, Vec3 x, Vec3 wi)

@@ -94,6 +94,10 @@ struct LightSample {
 /// reaches x.
 [[nodiscard]] std::optional<LightSample> sample_light(const Light& light, Vec3 x, Vec2 u);
 
+/// The inverse: u in [0,1)^2 for which sample_light goes from x to the point that hit_light meets
+/// along wi. Empty where that meets nothing.
+[[nodiscard]] std::optional<Vec2> light_numbers(const Light& light, Vec3 x, Vec3 wi);
+
 /// Density [1/sr] with which sample_light picks wi from x; 0 for delta lights and misses. Whether a
 /// ray meets the triangle of a mesh is the caller's to know.
 [[nodiscard]] float light_pdf(const Light& light, Vec3 x, Vec3 wi);

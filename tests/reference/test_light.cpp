@@ -259,5 +259,26 @@ TEST(Light, PowerIsTheIntegralOfEmission)
                     18.0f * pi);
 }
 
+TEST(Light, NumbersAreThoseOfTheDirection)
+{
+    const Vec3 x(0.2f, 0.1f, 0.05f);
+    for (const Light& light : area_lights()) {
+        for (uint32_t i = 0; i < 200; ++i) {
+            Rng rng(4, 0, Stream::Test, i, 0);
+            const Vec2 u = rng.uniform2();
+            const auto sample = sample_light(light, x, u);
+            if (!sample || !hit_light(light, x, sample->wi)) continue;  // grazed by rounding
+            const auto numbers = light_numbers(light, x, sample->wi);
+            ASSERT_TRUE(numbers);
+            // Directions are floats: a lamp of 1/3000 of a radian has some 3000 steps across.
+            EXPECT_LT(std::abs(numbers->x - u.x), 2e-3f) << light.index();
+            const float turn = std::abs(numbers->y - u.y);
+            EXPECT_LT(std::min(turn, 1.0f - turn) * std::sqrt(u.x), 2e-3f) << light.index();
+        }
+        EXPECT_FALSE(light_numbers(light, x, Vec3(-0.6f, -0.8f, 0.0f)));
+    }
+    EXPECT_FALSE(light_numbers(PointLight{}, x, Vec3(0.0f, 1.0f, 0.0f)));
+}
+
 }  // namespace
 }  // namespace mote

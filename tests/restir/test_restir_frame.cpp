@@ -4,7 +4,7 @@
 
 #include "core/parallel.h"
 #include "render/camera_pass.h"
-#include "restir/media_in_view.h"
+#include "restir/in_view.h"
 #include "restir/runs.h"
 #include "scene/aov_names.h"
 

@@ -13,4 +13,7 @@ namespace mote {
 /// The same for the pixels of a tile.
 [[nodiscard]] bool media_in_view(const Scene& scene, const Tile& tile);
 
+/// The same of surfaces.
+[[nodiscard]] bool surfaces_in_view(const Scene& scene, const Tile& tile);
+
 }  // namespace mote

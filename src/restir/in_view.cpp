@@ -1,4 +1,4 @@
-#include "restir/media_in_view.h"
+#include "restir/in_view.h"
 
 namespace mote {
 namespace {
@@ -38,6 +38,19 @@ bool is_outside(const Bounds3& box, const Trs& camera, const ViewRange& range)
     return outside[0] || outside[1] || outside[2] || outside[3] || outside[4];
 }
 
+/// Whether any of the boxes may be met by a ray of the tile.
+template <class Boxes>
+bool is_any_in_view(const Camera& camera, const Tile& tile, const Boxes& for_each_box)
+{
+    if (camera.lens_radius > 0.0f || camera.world_from_camera.is_moving()) return true;
+    const ViewRange range = view_range(camera, tile);
+    const Trs place = camera.world_from_camera.at(0.0f);
+    bool in_view = false;
+    for_each_box(
+        [&](const Bounds3& box) { in_view |= !box.is_empty() && !is_outside(box, place, range); });
+    return in_view;
+}
+
 }  // namespace
 
 bool media_in_view(const Scene& scene)
@@ -47,15 +60,15 @@ bool media_in_view(const Scene& scene)
 
 bool media_in_view(const Scene& scene, const Tile& tile)
 {
-    const Camera& camera = scene.camera;
-    if (camera.lens_radius > 0.0f || camera.world_from_camera.is_moving()) return true;
-    const ViewRange range = view_range(camera, tile);
-    const Trs place = camera.world_from_camera.at(0.0f);
-    for (const Volume& volume : scene.media.volumes) {
-        const Bounds3 box = world_bounds(volume);
-        if (!box.is_empty() && !is_outside(box, place, range)) return true;
-    }
-    return false;
+    return is_any_in_view(scene.camera, tile, [&](auto&& f) {
+        for (const Volume& volume : scene.media.volumes) f(world_bounds(volume));
+    });
+}
+
+bool surfaces_in_view(const Scene& scene, const Tile& tile)
+{
+    if (!scene.surfaces) return false;
+    return is_any_in_view(scene.camera, tile, [&](auto&& f) { f(scene.surfaces->bvh->bounds()); });
 }
 
 }  // namespace mote
