@@ -105,8 +105,8 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
     history.caches = make_light_caches(scene, {pixel_passes(render)}, history.caches);
     stats.cache_cpu_seconds = process_cpu_seconds() - cpu_start;
     const bool keeps_history = uses_history(render);
-    const FrameDomain domain =
-        make_frame_domain(share(scene, keeps_history), history.caches, render.restir);
+    const FrameDomain domain = make_frame_domain(share(scene, keeps_history), history.caches,
+                                                 render.restir, &history.last);
     std::optional<Change> change;
     if (history.last.scene) change = change_between(history.last, domain);
     const ReusePlan plan = plan_reuse(domain, render, change);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "restir/same.h"
+
 namespace mote {
 namespace {
 
@@ -48,7 +50,8 @@ DirectionTargets targets_of(const Scene& scene, const LightCaches& caches)
 }  // namespace
 
 FrameDomain make_frame_domain(std::shared_ptr<const Scene> scene,
-                              std::shared_ptr<const LightCaches> caches, const RestirParams& params)
+                              std::shared_ptr<const LightCaches> caches, const RestirParams& params,
+                              const FrameDomain* before)
 {
     FrameDomain frame;
     frame.params = params;
@@ -81,7 +84,10 @@ FrameDomain make_frame_domain(std::shared_ptr<const Scene> scene,
     frame.samples_local = caches->cells && !caches->cells->is_empty();
     frame.scene = std::move(scene);
     frame.caches = std::move(caches);
-    frame.lamp_surfaces = std::make_shared<const LampSurfaces>(frame.scene->lights);
+    const bool same_lamps =
+        before && before->scene && have_same_lamps(before->scene->lights, frame.scene->lights);
+    frame.lamp_surfaces = same_lamps ? before->lamp_surfaces
+                                     : std::make_shared<const LampSurfaces>(frame.scene->lights);
     frame.bsdf_finds = targets_of(*frame.scene, *frame.caches);
     frame.phase_finds = frame.bsdf_finds;
     frame.phase_finds.environment &= !params.control_variate;

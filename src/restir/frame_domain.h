@@ -55,9 +55,11 @@ struct FrameDomain {
     [[nodiscard]] bool has_sampled_lights() const { return samples_local || !infinite.empty(); }
 };
 
-/// The domain of a frame. `caches` must be of this scene, or stale: then only noise grows.
+/// The domain of a frame. `caches` must be of this scene, or stale: then only noise grows. What
+/// depends on lights that are still those of `before` (may be null, or empty) is taken from there.
 [[nodiscard]] FrameDomain make_frame_domain(std::shared_ptr<const Scene> scene,
                                             std::shared_ptr<const LightCaches> caches,
-                                            const RestirParams& params);
+                                            const RestirParams& params,
+                                            const FrameDomain* before = nullptr);
 
 }  // namespace mote

@@ -69,8 +69,7 @@ Change change_between(const FrameDomain& before, const FrameDomain& now)
     change.media = !(before.caches->media == now.caches->media) ||
                    !std::equal(a.media.volumes.begin(), a.media.volumes.end(),
                                b.media.volumes.begin(), b.media.volumes.end(), is_same_look);
-    change.lights = !std::equal(a.lights.begin(), a.lights.end(), b.lights.begin(), b.lights.end(),
-                                [](const Light& p, const Light& q) { return is_same(p, q); }) ||
+    change.lights = !have_same_lamps(a.lights, b.lights) ||
                     a.environment.has_value() != b.environment.has_value() ||
                     (a.environment && !is_same(*a.environment, *b.environment));
     change.surfaces = !is_same(a.surfaces.get(), b.surfaces.get());

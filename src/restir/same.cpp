@@ -1,5 +1,7 @@
 #include "restir/same.h"
 
+#include <algorithm>
+
 #include "scene/triangle_emission.h"
 
 namespace mote {
@@ -41,6 +43,12 @@ bool is_same(const Light& a, const Light& b)
         return is_same_look && is_same_area(*p, q);
     }
     return is_same_area(std::get<QuadLight>(a), std::get<QuadLight>(b));
+}
+
+bool have_same_lamps(std::span<const Light> a, std::span<const Light> b)
+{
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const Light& p, const Light& q) { return is_same(p, q); });
 }
 
 bool is_same(const EnvironmentLight& a, const EnvironmentLight& b)

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "scene/scene.h"
 
 namespace mote {
@@ -9,6 +11,7 @@ namespace mote {
 
 [[nodiscard]] bool is_same(const MovingTransform& a, const MovingTransform& b);
 [[nodiscard]] bool is_same(const Light& a, const Light& b);
+[[nodiscard]] bool have_same_lamps(std::span<const Light> a, std::span<const Light> b);
 [[nodiscard]] bool is_same(const EnvironmentLight& a, const EnvironmentLight& b);
 /// null: none.
 [[nodiscard]] bool is_same(const Surfaces* a, const Surfaces* b);

@@ -75,6 +75,21 @@ TEST(ShadowedCaches, AreMadeAgainWhereSurfacesMoveAndOnlyThen)
     EXPECT_NE(moved->directions, first->directions);
 }
 
+TEST(LampIndex, StaysWhileLampsDo)
+{
+    Scene scene = test::room();
+    const auto caches = make_light_caches(scene, {}, nullptr);
+    const FrameDomain first = make_frame_domain(test::borrow(scene), caches, {});
+    const FrameDomain empty;
+    EXPECT_NE(make_frame_domain(test::borrow(scene), caches, {}, &empty).lamp_surfaces, nullptr);
+    Scene next = scene;
+    EXPECT_EQ(make_frame_domain(test::borrow(next), caches, {}, &first).lamp_surfaces,
+              first.lamp_surfaces);
+    std::get<SphereLight>(next.lights[0]).position.x += 0.1f;
+    EXPECT_NE(make_frame_domain(test::borrow(next), caches, {}, &first).lamp_surfaces,
+              first.lamp_surfaces);
+}
+
 /// A room's domain that owns its scene, and the surface in the middle of a pixel.
 FrameDomain room_domain(const RoomState& state)
 {
