@@ -38,6 +38,8 @@ enum class Stream : uint32_t {
     Surface,
     SurfaceTemporal,
     SurfaceSpatial,
+    ScatterNodes,
+    Pyramid,
 };
 
 /// Counter-based generator: the n-th number of a stream is a pure function of its key and n, so

@@ -50,7 +50,7 @@ Spectrum estimate_emission_light(const TraceContext& context, const ScatterEvent
     const float weight = shadow_ray_weight(
         context.params, pdf, seen_emission_pdf(emissive, scattering.pdf_dir, distance2));
     if (!(weight > 0.0f)) return Spectrum(0.0f);
-    if (!(max_component(scattering.f) > 0.0f)) return Spectrum(0.0f);
+    if (scattering.f == Spectrum(0.0f)) return Spectrum(0.0f);
     return sample.j * (weight * scattering.f / (distance2 * pdf)) *
            estimate_visibility(context, event, wi, distance, rng);
 }
@@ -79,7 +79,7 @@ Spectrum estimate_direct_light(const TraceContext& context, const ScatterEvent& 
     const float weight = shadow_ray_weight(
         context.params, pdf, sample->is_delta ? 0.0f : scattering.pdf_dir, pdf_equiangular);
     if (!(weight > 0.0f) || !(max_component(sample->Li) > 0.0f)) return Spectrum(0.0f);
-    if (event.surface && !(max_component(scattering.f) > 0.0f)) return Spectrum(0.0f);
+    if (scattering.f == Spectrum(0.0f)) return Spectrum(0.0f);
     return sample->Li * (weight * scattering.f / pdf) *
            estimate_visibility(context, event, sample->wi, sample->distance, rng);
 }
@@ -91,8 +91,7 @@ Spectrum seen_light(const TraceContext& context, const LightRay& light_ray,
     const auto visibility = [&](float t) {
         if (t_end) return *t_end >= t ? 1.0f : 0.0f;
         if (t > light_ray.t_surface) return 0.0f;
-        return estimate_transmittance(context.scene.media, ray, {0.0f, t},
-                                      context.params.transmittance, rng);
+        return estimate_attenuation(context, ray, t, rng);
     };
     Spectrum sum(0.0f);
     if (context.lights.has_surfaces()) {

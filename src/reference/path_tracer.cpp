@@ -30,18 +30,14 @@ struct PathState {
     bool first_is_surface = false;
 };
 
-/// The ray on which light scattered at the event arrives; empty if nothing is scattered. A
-/// surface's BSDF goes into beta.
+/// The ray on which light scattered at the event arrives; empty if nothing is scattered. What
+/// becomes of it goes into beta.
 std::optional<LightRay> scattered_ray(const ScatterEvent& event, Rng& rng, Spectrum& beta)
 {
-    if (event.surface) {
-        const std::optional<BsdfSample> s = sample_bsdf(*event.surface, event.wo, rng.uniform3());
-        if (!s) return std::nullopt;
-        beta *= s->value.f * (s->value.cosine / s->value.pdf_dir);
-        return LightRay{Ray{ray_origin(event, s->wi), s->wi, event.time}, s->value.pdf_dir, false};
-    }
-    const Vec3 wi = sample_phase(*event.phase, event.wo, rng.uniform2());
-    return LightRay{Ray{event.x, wi, event.time}, phase_pdf(*event.phase, event.wo, wi), false,
+    const std::optional<ScatteredDirection> s = sample_scattering(event, rng);
+    if (!s) return std::nullopt;
+    beta *= s->scattering.f / s->scattering.pdf_dir;
+    return LightRay{Ray{ray_origin(event, s->wi), s->wi, event.time}, s->scattering.pdf_dir, false,
                     event.first};
 }
 
@@ -149,10 +145,8 @@ PathResult trace_path(const Scene& scene, const LightSampler& lights,
     return result;
 }
 
-PathResult trace_after_event(const Scene& scene, const LightSampler& lights,
-                             const PathTracerParams& params, const ScatterEvent& first, Rng& rng)
+PathResult trace_after_event(const TraceContext& context, const ScatterEvent& first, Rng& rng)
 {
-    const TraceContext context{scene, lights, params};
     PathResult result;
     Spectrum beta(1.0f);
     const std::optional<LightRay> scattered = scattered_ray(first, rng, beta);
@@ -161,6 +155,15 @@ PathResult trace_after_event(const Scene& scene, const LightSampler& lights,
     result.direct = Spectrum(0.0f);  // the scattered ray's half of it alone
     result.surface_direct = Spectrum(0.0f);
     return result;
+}
+
+Spectrum trace_scattered_ray(const TraceContext& context, const LightRay& light_ray,
+                             int event_count, Rng& rng, bool& truncated)
+{
+    PathResult result;
+    follow(context, {light_ray, Spectrum(1.0f), event_count, false}, std::nullopt, rng, result);
+    truncated |= result.truncated;
+    return result.direct + result.indirect;
 }
 
 }  // namespace mote

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/rng.h"
+#include "reference/direct_light.h"
 #include "reference/light_sampler.h"
 #include "reference/scatter_event.h"
 #include "scene/path_tracer_params.h"
@@ -43,8 +44,13 @@ struct PathResult {
 /// twice and more, seen at the event, in indirect or surface_indirect. A medium's albedo is left
 /// out. Light scattered once is not estimated (0). Precondition: params.max_bounces > 1. For
 /// estimators that place the first event themselves.
-[[nodiscard]] PathResult trace_after_event(const Scene& scene, const LightSampler& lights,
-                                           const PathTracerParams& params,
-                                           const ScatterEvent& first, Rng& rng);
+[[nodiscard]] PathResult trace_after_event(const TraceContext& context, const ScatterEvent& first,
+                                           Rng& rng);
+
+/// Radiance that arrives on a ray along which an event scattered light, `event_count` events behind
+/// it, that one included: together with estimate_direct_light at the event all light scattered
+/// there. `truncated` is set where max_bounces cut a path.
+[[nodiscard]] Spectrum trace_scattered_ray(const TraceContext& context, const LightRay& light_ray,
+                                           int event_count, Rng& rng, bool& truncated);
 
 }  // namespace mote

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "reference/light_sampler.h"
+#include "reference/shadow_guess.h"
 #include "scene/path_tracer_params.h"
 #include "scene/scene.h"
 
@@ -11,6 +12,7 @@ struct TraceContext {
     const Scene& scene;
     const LightSampler& lights;
     const PathTracerParams& params;
+    const ShadowGuess* shadows = nullptr;  ///< null: every shadow is asked for
 };
 
 }  // namespace mote

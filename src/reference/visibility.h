@@ -11,4 +11,9 @@ namespace mote {
 [[nodiscard]] float estimate_visibility(const TraceContext& context, const ScatterEvent& event,
                                         Vec3 wi, float distance, Rng& rng);
 
+/// The same from a point in media, along a ray of which the caller knows where a surface ends it:
+/// only media attenuate.
+[[nodiscard]] float estimate_attenuation(const TraceContext& context, const Ray& ray,
+                                         float distance, Rng& rng);
+
 }  // namespace mote

@@ -1,5 +1,7 @@
 #include "render/camera_pass.h"
 
+#include "multiscatter/cached_shadows.h"
+#include "multiscatter/scatter_along.h"
 #include "reference/path_tracer.h"
 #include "render/motion.h"
 #include "render/view_depth.h"
@@ -104,32 +106,42 @@ Spectrum medium_event(const Scene& scene, const PixelDomain& domain, float tau, 
 /// Light scattered twice and more, by the path tracer from exact first events on: stratified free
 /// flights, each worth the share of light that collides; where a surface ends the ray, that is all.
 void add_indirect(const PassInputs& inputs, const PixelDomain& domain, const SurfaceVertex* surface,
-                  Rng& rng, FilmSample& sample, bool& truncated)
+                  bool surface_only, Rng& rng, FilmSample& sample, bool& truncated)
 {
     const Scene& scene = *inputs.domain.scene;
     const float depth = domain.bins.depth();
-    const int paths = inputs.domain.params.indirect_paths;
+    const auto paths = static_cast<float>(inputs.domain.params.indirect_paths);
     const float lost = surface ? 1.0f : -std::expm1(-depth);
-    const float weight = lost / static_cast<float>(paths);
-    for (int i = 0; i < paths; ++i) {
-        const float u = (static_cast<float>(i) + rng.uniform()) / static_cast<float>(paths);
+    if (!(lost > 0.0f)) return;
+    // As many as the light that collides is worth: on thin smoke fewer.
+    const float step = 1.0f / (lost * paths);
+    const float weight = 1.0f / paths;
+    const CachedShadows shadows(*inputs.domain.caches);
+    const TraceContext context{scene, inputs.lights, inputs.render.path, &shadows};
+    for (float u = rng.uniform() * step; u < 1.0f; u += step) {
         const float tau = -std::log1p(-std::min(u, one_minus_epsilon) * lost);
         const float choice = rng.uniform();
         ScatterEvent first{Vec3(0.0f), domain.wo(), domain.ray.time, nullptr, nullptr, nullptr};
         Spectrum albedo(1.0f);
-        if (surface && !(tau < depth)) {
+        const bool on_surface = surface && !(tau < depth);
+        if (surface_only && !on_surface) continue;
+        if (on_surface) {
             first.x = surface->p;
             first.surface = surface;
         } else {
             albedo = medium_event(scene, domain, tau, choice, first);
             if (!first.phase) continue;
         }
-        const PathResult path =
-            trace_after_event(scene, inputs.lights, inputs.render.path, first, rng);
+        const PathResult path = trace_after_event(context, first, rng);
         sample.indirect += weight * albedo * path.indirect;
         sample.surface_indirect += weight * path.surface_indirect;
         truncated |= path.truncated;
     }
+}
+
+RayPyramidParams pyramid_params(const PassInputs& inputs)
+{
+    return {inputs.domain.params.indirect_pairs};
 }
 
 /// Of what ends the ray: its emission, normal and place, and the domain of its samples.
@@ -199,8 +211,35 @@ std::optional<FilmSample> uniform_tile(const PassInputs& inputs, const Tile& til
     return sample;
 }
 
-void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray, int owner,
-                PassDomain& domain, LightRays& rays, FilmSample& sample, PassCounts& counts)
+std::unique_ptr<RayPyramid> make_tile_pyramid(const PassInputs& inputs, const Tile& tile,
+                                              PassCounts& counts)
+{
+    const Scene& scene = *inputs.domain.scene;
+    const RestirParams& params = inputs.domain.params;
+    const bool shares = params.indirect != IndirectLight::Paths && params.corrections &&
+                        inputs.render.path.max_bounces > 1 && can_share_rays(scene);
+    if (!shares || !media_in_view(scene, tile)) return nullptr;
+    auto pyramid = std::make_unique<RayPyramid>();
+    make_ray_pyramid(inputs.domain, tile, *pyramid, counts.bins);
+    if (params.indirect == IndirectLight::Auto && !is_worth_sharing(scene, *pyramid)) {
+        return nullptr;
+    }
+    return pyramid;
+}
+
+void light_tile_pyramid(const PassInputs& inputs, uint32_t pass, RayPyramid* pyramid)
+{
+    if (!pyramid) return;
+    Rng rng = pass_rng(inputs, {pyramid->tile.x0, pyramid->tile.y0, pass}, Stream::Pyramid);
+    bool truncated = false;
+    const CachedShadows shadows(*inputs.domain.caches);
+    light_ray_pyramid({*inputs.domain.scene, inputs.lights, inputs.render.path, &shadows},
+                      pyramid_params(inputs), rng, *pyramid, truncated);
+}
+
+void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray,
+                const RayPyramid* pyramid, int owner, PassDomain& domain, LightRays& rays,
+                FilmSample& sample, PassCounts& counts)
 {
     const FrameDomain& frame = inputs.domain;
     const Scene& scene = *frame.scene;
@@ -243,7 +282,15 @@ void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray, in
     ++counts.truncated;
     if (max_bounces > 1) {
         bool truncated = false;
-        add_indirect(inputs, media, surface, rng, sample, truncated);
+        if (inputs.nodes) {
+            sample.indirect = scatter_along(*inputs.nodes, scene.media, ray, media.bins);
+        } else if (pyramid) {
+            const CachedShadows shadows(*frame.caches);
+            sample.indirect = light_of_pixel({scene, inputs.lights, inputs.render.path, &shadows},
+                                             pyramid_params(inputs), *pyramid, key.x, key.y, media,
+                                             rng, truncated);
+        }
+        add_indirect(inputs, media, surface, pyramid || inputs.nodes, rng, sample, truncated);
         counts.truncated += truncated ? 0 : -1;
     }
 }

@@ -1,7 +1,8 @@
 #pragma once
 
 #include "core/sobol.h"
-#include "reference/light_sampler.h"
+#include "multiscatter/ray_pyramid.h"
+#include "multiscatter/scatter_nodes.h"
 #include "render/aov.h"
 #include "render/film.h"
 #include "restir/control_variate.h"
@@ -22,7 +23,8 @@ struct PassInputs {
     const FrameDomain& domain;
     const RenderDescription& render;
     AovSet aovs;
-    const LightSampler& lights;  ///< for paths of many events; empty if there are none
+    const LightSampler& lights;           ///< for paths of many events; empty if there are none
+    const ScatterNodes* nodes = nullptr;  ///< for previews; null: none
 };
 
 /// One pixel's pass: where, and which.
@@ -60,8 +62,18 @@ struct PassDomain {
 /// sample that need no reservoir: background and alpha in closed form, emission by one point per
 /// brick with exact transmittance, lights at infinity by control variate (corrections go to `rays`
 /// under `owner`), two and more events by the path tracer. Pixels without smoke cost a bounds test.
-void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray, int owner,
-                PassDomain& domain, LightRays& rays, FilmSample& sample, PassCounts& counts);
+/// `pyramid`: the tile's shared rays, lit for this pass; null: paths of many events are the pixel's
+/// own.
+void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray,
+                const RayPyramid* pyramid, int owner, PassDomain& domain, LightRays& rays,
+                FilmSample& sample, PassCounts& counts);
+
+/// The rays that a tile's pixels share for light of many events; null where they have none.
+[[nodiscard]] std::unique_ptr<RayPyramid> make_tile_pyramid(const PassInputs& inputs,
+                                                            const Tile& tile, PassCounts& counts);
+
+/// Lights them for a pass. Null is left alone.
+void light_tile_pyramid(const PassInputs& inputs, uint32_t pass, RayPyramid* pyramid);
 
 /// What every pass of every pixel of a tile shows, if that is one and the same: a constant
 /// background, or none, and no medium or surface that a ray of the tile may meet.

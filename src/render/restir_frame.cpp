@@ -4,6 +4,7 @@
 #include <mutex>
 
 #include "core/parallel.h"
+#include "multiscatter/cached_shadows.h"
 #include "render/restir_reuse.h"
 #include "render/surface_pass.h"
 #include "restir/cache_stats.h"
@@ -21,6 +22,7 @@ struct TileScratch {
     std::vector<FilmSample> samples;
     std::vector<PixelFilm> pixels;
     PassDomain domain;
+    std::unique_ptr<RayPyramid> pyramid;
 };
 
 void trace_tile_pass(const PassInputs& inputs, const Tile& tile, uint32_t pass,
@@ -29,14 +31,15 @@ void trace_tile_pass(const PassInputs& inputs, const Tile& tile, uint32_t pass,
     const FrameDomain& frame = inputs.domain;
     scratch.rays.clear();
     scratch.surface_rays.clear();
+    light_tile_pyramid(inputs, pass, scratch.pyramid.get());
     int owner = 0;
     for (int y = tile.y0; y < tile.y1; ++y) {
         for (int x = tile.x0; x < tile.x1; ++x, ++owner) {
             const PassKey key{x, y, pass};
             FilmSample& sample = scratch.samples[static_cast<size_t>(owner)];
             sample = {};
-            begin_pass(inputs, key, camera_ray(inputs, key), owner, scratch.domain, scratch.rays,
-                       sample, counts);
+            begin_pass(inputs, key, camera_ray(inputs, key), scratch.pyramid.get(), owner,
+                       scratch.domain, scratch.rays, sample, counts);
             if (inputs.render.path.max_bounces == 0) continue;
             if (scratch.domain.surface.is_sampled()) {
                 const SurfaceDomain& surface = scratch.domain.surface;
@@ -105,12 +108,22 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
     history.caches = make_light_caches(scene, {pixel_passes(render)}, history.caches);
     stats.cache_cpu_seconds = process_cpu_seconds() - cpu_start;
     const bool keeps_history = uses_history(render);
-    const FrameDomain domain = make_frame_domain(share(scene, keeps_history), history.caches,
-                                                 render.restir, &history.last);
+    const FrameDomain domain = make_frame_domain(
+        share(scene, keeps_history), history.caches,
+        settle_corrections(render.restir, render.path.max_bounces), &history.last);
     std::optional<Change> change;
     if (history.last.scene) change = change_between(history.last, domain);
     const ReusePlan plan = plan_reuse(domain, render, change);
-    const PassInputs inputs{domain, render, aovs, lights};
+    std::optional<ScatterNodes> nodes;
+    const bool is_preview = !render.restir.corrections;
+    if (is_preview && can_have_scatter_nodes(scene, render.path)) {
+        const CachedShadows shadows(*history.caches);
+        nodes = make_scatter_nodes(
+            {scene, lights, render.path, &shadows},
+            {render.restir.node_paths, render.restir.node_spacing, render.samples, render.seed});
+        stats.cache_cpu_seconds += nodes->cpu_seconds;
+    }
+    const PassInputs inputs{domain, render, aovs, lights, nodes ? &*nodes : nullptr};
     PassCounts counts;
     bool finished = false;
     if (plan.reuses_samples()) {
@@ -175,6 +188,7 @@ bool render_independent_passes(const PassInputs& inputs, const FrameControl& con
             for_pixels([&](int x, int y, PixelFilm& p) { p = accumulated->at(x, y); });
         }
         PassCounts tile_counts;
+        if (!uniform) scratch.pyramid = make_tile_pyramid(inputs, tile, tile_counts);
         int64_t tile_dropped = 0;
         const TrackingCounts tracking_before = tracking_counts;
         for (int pass = 0; pass < inputs.render.samples; ++pass) {

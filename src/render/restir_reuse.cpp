@@ -103,6 +103,8 @@ void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, const DomainSto
     std::vector<FilmSample*> samples;
     PassDomain pass_domain;
     PixelDomain& domain = pass_domain.media;
+    const std::unique_ptr<RayPyramid> pyramid = make_tile_pyramid(inputs, tile, n);
+    light_tile_pyramid(inputs, pass, pyramid.get());
     for (int y = tile.y0; y < tile.y1; ++y) {
         for (int x = tile.x0; x < tile.x1; ++x) {
             const PassKey key{x, y, pass};
@@ -112,7 +114,7 @@ void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, const DomainSto
             const auto owner = static_cast<int>(samples.size());
             samples.push_back(&sample);
             const Ray ray = kept ? kept->ray(x, y) : camera_ray(inputs, key);
-            begin_pass(inputs, key, ray, owner, pass_domain, corrections, sample, n);
+            begin_pass(inputs, key, ray, pyramid.get(), owner, pass_domain, corrections, sample, n);
             if (inputs.render.path.max_bounces == 0) pass_domain.surface.share = 0.0f;
             if (now.surfaces.size() > 0) now.surfaces.at(x, y) = pass_domain.surface;
             const size_t first = candidates.size();

@@ -4,8 +4,10 @@
 #include <cmath>
 
 #include "restir/incident_light.h"
+#include "restir/media_mixture.h"
 #include "restir/mixed_phase.h"
 #include "restir/pixel_domain.h"
+#include "restir/ray_flight.h"
 #include "scene/environment.h"
 #include "volumes/media_at.h"
 
@@ -15,30 +17,11 @@ namespace {
 /// Directions into an environment image: this share by the image, the rest by the phase function.
 constexpr float image_share = 0.5f;
 
-/// Media at an edge. Any mixture serves a control variate, so few parts are enough.
-struct Mixture {
-    static constexpr int capacity = 4;
-    struct Part {
-        const Volume* volume = nullptr;
-        float share = 0.0f;
-        Spectrum albedo{0.0f};
-    };
-    Part parts[capacity];
-    int count = 0;
-};
-
 struct EdgeLight {
     Vec3 x{0.0f};
-    Mixture media;
+    MediaMixture media;
     Spectrum distant{0.0f};      ///< cached in-scattered radiance, albedo included
     Spectrum environment{0.0f};  ///< likewise
-};
-
-/// An exact free flight on a binned ray, given that there is a collision.
-struct Flight {
-    int bin = 0;
-    float lambda = 0.0f;  ///< share of the bin's optical depth before it
-    Vec3 x{0.0f};
 };
 
 class InfiniteLights {
@@ -71,11 +54,7 @@ class InfiniteLights {
     {
         EdgeLight& edge = edges_[k];
         edge.x = ray_.at(bins_.world_t(bins_.s[k]));
-        for_each_scatterer(frame_.scene->media, edge.x, ray_.time,
-                           [&](const Volume& volume, float share, Spectrum albedo) {
-                               if (edge.media.count == Mixture::capacity) return;
-                               edge.media.parts[edge.media.count++] = {&volume, share, albedo};
-                           });
+        edge.media = mixture_at(frame_.scene->media, edge.x, ray_.time);
         // At the border of all media the mixture is that of the edge before.
         if (edge.media.count == 0 && k > 0) edge.media = edges_[k - 1].media;
         for (const LightCaches::Distant& distant : frame_.caches->distant) {
@@ -90,7 +69,7 @@ class InfiniteLights {
     {
         Spectrum scattering(0.0f);
         for (int i = 0; i < edge.media.count; ++i) {
-            const Mixture::Part& part = edge.media.parts[i];
+            const MediaMixture::Part& part = edge.media.parts[i];
             scattering +=
                 (part.share * eval_phase(part.volume->phase, -ray_.d, distant.direction)) *
                 part.albedo;
@@ -102,7 +81,7 @@ class InfiniteLights {
     {
         Spectrum sum(0.0f);
         for (int i = 0; i < edge.media.count; ++i) {
-            const Mixture::Part& part = edge.media.parts[i];
+            const MediaMixture::Part& part = edge.media.parts[i];
             sum += part.share * part.albedo *
                    frame_.caches->environment->inscatter(phase_index(part), edge.x);
         }
@@ -114,32 +93,22 @@ class InfiniteLights {
     {
         Spectrum sum(0.0f);
         for (int i = 0; i < edge.media.count; ++i) {
-            const Mixture::Part& part = edge.media.parts[i];
+            const MediaMixture::Part& part = edge.media.parts[i];
             sum += part.share * part.albedo *
                    frame_.caches->environment->directional(phase_index(part), edge.x, -ray_.d, wi);
         }
         return sum;
     }
 
-    [[nodiscard]] int phase_index(const Mixture::Part& part) const
+    [[nodiscard]] int phase_index(const MediaMixture::Part& part) const
     {
         const auto volume = part.volume - frame_.scene->media.volumes.data();
         return frame_.caches->environment->phase_of(static_cast<size_t>(volume));
     }
 
-    [[nodiscard]] Flight free_flight(float u) const
+    [[nodiscard]] RayFlight free_flight(float u) const
     {
-        const float tau = std::min(-std::log1p(-u * lost_), bins_.depth());
-        const float* first = bins_.tau;
-        const auto above = std::upper_bound(first + 1, first + bins_.count, tau) - first;
-        Flight flight;
-        flight.bin = static_cast<int>(above) - 1;
-        const float depth = bins_.depth_of_bin(flight.bin);
-        const float within = tau - bins_.tau[flight.bin];
-        flight.lambda = depth > 0.0f ? std::clamp(within / depth, 0.0f, 1.0f) : 0.0f;
-        const float s = invert_bin(frame_.scene->media, ray_, bins_, flight.bin, within);
-        flight.x = ray_.at(bins_.world_t(s));
-        return flight;
+        return flight_at(frame_.scene->media, ray_, bins_, u);
     }
 
     const FrameDomain& frame_;
@@ -180,7 +149,7 @@ Spectrum InfiniteLights::correct_distant(float u, float u_light, float share, in
         wi = sample.wi;
         irradiance = sample.Li / sample.pdf_dir;
     }
-    const Flight flight = free_flight(u);
+    const RayFlight flight = free_flight(u);
     const float per_irradiance = share * lost_ / pmf;
     const Spectrum weight = per_irradiance * irradiance;
     const Spectrum f = weight * scattering_at(frame_, flight.x, ray_.time, -ray_.d, wi);
@@ -200,7 +169,7 @@ Spectrum InfiniteLights::correct_environment(float u, Vec2 u_direction, float u_
                                              LightRays& rays) const
 {
     const EnvironmentLight& environment = frame_.caches->parts->rest;
-    const Flight flight = free_flight(u);
+    const RayFlight flight = free_flight(u);
     const Vec3 wo = -ray_.d;
     const MixedPhase phase = mixed_phase_at(frame_.scene->media, flight.x, ray_.time);
     if (phase.empty()) return Spectrum(0.0f);
@@ -247,7 +216,7 @@ Spectrum scatter_infinite_lights(const FrameDomain& frame, const Ray& ray, const
         const float v = u + step;
         return std::min(v - std::floor(v), one_minus_epsilon);
     };
-    const int distant_rays = caches.distant.empty() ? 0 : frame.params.distant_rays;
+    const int distant_rays = caches.distant.empty() ? 0 : distant_rays_of(frame.params);
     for (int i = 0; i < distant_rays; ++i) {
         const float share = 1.0f / static_cast<float>(distant_rays);
         const float step = static_cast<float>(i) * share;
@@ -255,7 +224,7 @@ Spectrum scatter_infinite_lights(const FrameDomain& frame, const Ray& ray, const
                                       shifted(choice.x, 0.618034f * static_cast<float>(i)), share,
                                       owner, known, rng, rays);
     }
-    const int environment_rays = caches.environment ? frame.params.environment_rays : 0;
+    const int environment_rays = caches.environment ? environment_rays_of(frame.params) : 0;
     for (int i = 0; i < environment_rays; ++i) {
         const auto n = static_cast<float>(i);
         const float share = 1.0f / static_cast<float>(environment_rays);

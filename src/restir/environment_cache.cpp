@@ -3,11 +3,6 @@
 namespace mote {
 namespace {
 
-bool same(const Phase& a, const Phase& b)
-{
-    return a.g == b.g && a.g_b == b.g_b && a.weight_b == b.weight_b;
-}
-
 /// Whether hats of these many directions cannot follow a lobe. Both kinds are equally good around
 /// g = 0.6 with 72 directions and g = 0.5 with 32.
 bool is_narrow(const Phase& phase, const DirectionHats& hats)
@@ -22,15 +17,10 @@ bool is_narrow(const Phase& phase, const DirectionHats& hats)
 EnvironmentCache::EnvironmentCache(std::shared_ptr<const DirectionTransmittance> transmittance,
                                    std::vector<Spectrum> radiance, const Media& media,
                                    Vec3 camera_position)
-    : nodes_{std::move(transmittance), std::move(radiance), camera_position}
+    : nodes_{std::move(transmittance), std::move(radiance), camera_position},
+      phases_(list_phases(media))
 {
     nodes_.radiance.resize(static_cast<size_t>(nodes_.transmittance->hats().count()));
-    for (const Volume& volume : media.volumes) {
-        size_t i = 0;
-        while (i < phases_.size() && !same(phases_[i], volume.phase)) ++i;
-        if (i == phases_.size()) phases_.push_back(volume.phase);
-        phase_of_volume_.push_back(static_cast<int>(i));
-    }
     bake(camera_position);
 }
 
@@ -41,7 +31,7 @@ void EnvironmentCache::bake(Vec3 camera_position)
     nodes_.camera = camera_position;
     inscatter_.clear();
     stats_ = {};
-    for (const Phase& phase : phases_) {
+    for (const Phase& phase : phases_.phases) {
         if (is_narrow(phase, nodes_.transmittance->hats())) {
             inscatter_.emplace_back(NarrowInscatter(phase, nodes_));
         } else {

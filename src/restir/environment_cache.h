@@ -4,6 +4,7 @@
 
 #include "restir/narrow_inscatter.h"
 #include "restir/wide_inscatter.h"
+#include "volumes/phase_list.h"
 
 namespace mote {
 
@@ -32,7 +33,7 @@ class EnvironmentCache {
     void bake(Vec3 camera_position);
 
     /// Number of a volume's phase function, for the calls below; equal ones share a number.
-    [[nodiscard]] int phase_of(size_t volume) const { return phase_of_volume_[volume]; }
+    [[nodiscard]] int phase_of(size_t volume) const { return phases_.of_volume[volume]; }
 
     /// Environment light scattered towards the camera at world point x: the integral over
     /// directions of radiance, transmittance and phase function [W/(m^2 sr)]. Finite and >= 0 for
@@ -50,8 +51,7 @@ class EnvironmentCache {
     using Inscatter = std::variant<WideInscatter, NarrowInscatter>;
 
     EnvironmentNodes nodes_;
-    std::vector<Phase> phases_;
-    std::vector<int> phase_of_volume_;
+    PhaseList phases_;
     std::vector<Inscatter> inscatter_;  ///< per phase
     CacheStats stats_;
 };

@@ -7,6 +7,7 @@ constexpr std::array reuse_names = {"auto", "off", "temporal", "spatial", "both"
 constexpr std::array shift_names = {"random_numbers", "world", "fraction"};
 constexpr std::array mis_names = {"auto", "pairwise", "balance", "constant"};
 constexpr std::array visibility_names = {"exact", "cached", "none"};
+constexpr std::array indirect_names = {"auto", "paths", "shared"};
 constexpr std::array preset_names = {"default", "textbook", "preview", "biased-no-visibility",
                                      "biased-constant-mis"};
 
@@ -42,15 +43,18 @@ void describe(FieldVisitor& v, RestirParams& restir)
          .doc = "Distant lights and the environment by closed form plus exact corrections; false: "
                 "they take part in the candidates"},
         restir.control_variate);
-    visit(v,
-          {.key = "distant_rays",
-           .doc = "Exact corrections per pixel and pass towards distant lights",
-           .range = between(1, 64)},
-          restir.distant_rays);
+    visit(
+        v,
+        {.key = "distant_rays",
+         .doc = "Exact corrections per pixel and pass towards distant lights; 0: 2, or 1 if light "
+                "may scatter twice",
+         .range = between(0, 64)},
+        restir.distant_rays);
     visit(v,
           {.key = "environment_rays",
-           .doc = "Exact corrections per pixel and pass into the environment",
-           .range = between(1, 64)},
+           .doc = "Exact corrections per pixel and pass into the environment; 0: 8, or 2 if light "
+                  "may scatter twice",
+           .range = between(0, 64)},
           restir.environment_rays);
     visit(
         v,
@@ -58,6 +62,31 @@ void describe(FieldVisitor& v, RestirParams& restir)
          .doc = "Paths per pixel and pass for light scattered twice and more, if `bounces` allows",
          .range = between(1, 256)},
         restir.indirect_paths);
+    visit_choice(
+        v,
+        {.key = "indirect",
+         .doc = "Light scattered twice and more in media: paths of each pixel's own, or "
+                "pairs of paths from its ray and rays that neighbouring pixels share; auto: "
+                "shared, unless volumes or objects move while the shutter is open"},
+        restir.indirect, indirect_names);
+    visit(v,
+          {.key = "indirect_pairs",
+           .doc = "Pairs of paths per pixel and pass, where rays are shared",
+           .range = between(1, 64)},
+          restir.indirect_pairs);
+    visit(v,
+          {.key = "node_paths",
+           .doc =
+               "Of previews (`corrections` false): paths from nodes, per pass and pixel that smoke "
+               "fills",
+           .range = between(0.01, 1000)},
+          restir.node_paths);
+    visit(v,
+          {.key = "node_spacing",
+           .doc = "Of previews, between nodes; 0: by the smoke's density and the size of pixels",
+           .unit = "m",
+           .range = at_least(0)},
+          restir.node_spacing);
     visit(v,
           {.key = "corrections",
            .doc = "false: distant lights and the environment by closed form alone, without noise "

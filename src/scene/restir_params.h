@@ -27,6 +27,13 @@ enum class ReuseMis {
     Constant,  ///< confidence alone; biased where supports differ: for study
 };
 
+/// Where light scattered twice and more comes from.
+enum class IndirectLight {
+    Auto,    ///< Shared, unless volumes or objects move while the shutter is open
+    Paths,   ///< paths of the pixel's own
+    Shared,  ///< pairs of paths from the pixel's ray and from rays that pixels share
+};
+
 /// What the target function knows about shadows.
 enum class TargetVisibility {
     Exact,   ///< closed-form transmittance, a ray per evaluation; nothing left to shade
@@ -76,10 +83,15 @@ struct RestirParams {
     int candidates = 8;           ///< distances and lights tried per pixel and pass, [1, 256]
     bool control_variate = true;  ///< lights at infinity by closed form plus exact corrections;
                                   ///< else they take part in the candidates
-    int distant_rays = 2;         ///< exact corrections per pass towards distant lights
-    int environment_rays = 8;     ///< and into the environment
-    int indirect_paths = 4;       ///< paths of two and more events per pass, by the path tracer
-    bool corrections = true;      ///< false: the closed form alone, a fast biased preview
+    int distant_rays = 0;         ///< exact corrections per pass towards distant lights; 0: see
+                                  ///< distant_rays_of
+    int environment_rays = 0;     ///< and into the environment; 0: see environment_rays_of
+    IndirectLight indirect = IndirectLight::Auto;
+    int indirect_paths = 4;     ///< paths of two and more events per pass, by the path tracer
+    int indirect_pairs = 2;     ///< pairs per pass, where rays are shared
+    float node_paths = 1.0f;    ///< previews: paths from nodes per pass and pixel of smoke
+    float node_spacing = 0.0f;  ///< previews: [m]; 0: by density and pixel size
+    bool corrections = true;    ///< false: the closed form alone, a fast biased preview
     ShiftKind shift = ShiftKind::RandomNumbers;
     ReuseMis mis = ReuseMis::Auto;
     TargetVisibility visibility = TargetVisibility::Exact;
@@ -120,6 +132,25 @@ struct RestirParams {
             p.mis = ReuseMis::Constant;
             break;
     }
+    return p;
+}
+
+/// Exact corrections per pass where the scene leaves it open.
+[[nodiscard]] inline int distant_rays_of(const RestirParams& p)
+{
+    return p.distant_rays > 0 ? p.distant_rays : 2;
+}
+[[nodiscard]] inline int environment_rays_of(const RestirParams& p)
+{
+    return p.environment_rays > 0 ? p.environment_rays : 8;
+}
+
+/// Settles what the scene leaves open by how often light may scatter: next to the noise of light
+/// scattered twice and more, that of few corrections is small.
+[[nodiscard]] inline RestirParams settle_corrections(RestirParams p, int max_bounces)
+{
+    if (p.distant_rays == 0) p.distant_rays = max_bounces > 1 ? 1 : distant_rays_of(p);
+    if (p.environment_rays == 0) p.environment_rays = max_bounces > 1 ? 2 : environment_rays_of(p);
     return p;
 }
 

@@ -1,0 +1,174 @@
+#include "multiscatter/scatter_nodes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/parallel.h"
+#include "reference/path_tracer.h"
+#include "restir/cache_stats.h"
+#include "restir/in_view.h"
+#include "volumes/media_extent.h"
+
+namespace mote {
+namespace {
+
+constexpr size_t grain = 64;  ///< nodes per task
+
+/// Nodes that the camera hardly sees still get a path with this probability: pixels at the border
+/// of the view may use them.
+constexpr float least_paths = 1.0f / 32;
+
+/// Mean extinction around a node, from its own and its eight half-way neighbours' places [1/m].
+float extinction_around(const Media& media, Vec3 node, float spacing)
+{
+    float sum = sigma_t_at(media, node, cache_time);
+    for (int n = 0; n < 8; ++n) {
+        const Vec3 corner(n & 1 ? 0.5f : -0.5f, n & 2 ? 0.5f : -0.5f, n & 4 ? 0.5f : -0.5f);
+        sum += sigma_t_at(media, node + spacing * corner, cache_time);
+    }
+    return sum / 9.0f;
+}
+
+/// Pixels per steradian around the view's middle.
+float pixels_per_steradian(const Camera& camera)
+{
+    return sqr(static_cast<float>(camera.height) / (2.0f * camera.tan_half_fov_y));
+}
+
+/// About how much of the image a node stands for: the pixels its cube covers, and the share of
+/// their light that scatters in it.
+struct NodeView {
+    float pixels = 0.0f;
+    float share = 0.0f;
+};
+
+NodeView view_of(const Scene& scene, const SmokeLattice& lattice, Vec3 node, Vec3 eye)
+{
+    const Camera& camera = scene.camera;
+    const float h = lattice.spacing;
+    const Vec3 from_eye = node - eye;
+    const float distance = std::max(glm::length(from_eye), h);
+    const float scale = pixels_per_steradian(camera);
+    NodeView view;
+    view.pixels = std::min(sqr(h / distance) * scale,
+                           static_cast<float>(camera.width) * static_cast<float>(camera.height));
+    const std::optional<Vec2> film = project(camera, node, cache_time);
+    const float reach = h / distance * std::sqrt(scale);
+    const bool inside = film && film->x > -reach && film->y > -reach &&
+                        film->x < static_cast<float>(camera.width) + reach &&
+                        film->y < static_cast<float>(camera.height) + reach;
+    if (!inside && distance > 2.0f * h) return view;
+    const Ray ray{eye, from_eye / distance, cache_time};
+    if (scene.surfaces && is_shadowed(*scene.surfaces, ray, distance - h)) return view;
+    const float T = std::exp(-optical_depth(scene.media, ray, {0.0f, distance}));
+    view.share = T * -std::expm1(-h * extinction_around(scene.media, node, h));
+    return view;
+}
+
+/// Mean of a node's paths. `mean_count` of them are traced on average.
+Spectrum trace_node(const TraceContext& context, const Phase& phase, Vec3 node, Vec3 wo,
+                    float mean_count, Rng& rng, int64_t& traced)
+{
+    int count = static_cast<int>(std::lround(std::min(mean_count, 1e6f)));
+    float weight = 1.0f / static_cast<float>(std::max(count, 1));
+    if (mean_count < 1.0f) {
+        count = rng.uniform() < mean_count ? 1 : 0;
+        weight = 1.0f / mean_count;
+    }
+    ScatterEvent event{node, wo, 0.0f, &phase};
+    Spectrum sum(0.0f);
+    for (int i = 0; i < count; ++i) {
+        sum += weight * trace_after_event(context, event, rng).indirect;
+    }
+    traced += count;
+    return sum;
+}
+
+/// Fine enough for the light not to change much from node to node: part of a free flight where the
+/// smoke is dense; but not finer than a few pixels, as nodes cost paths.
+float choose_spacing(const Scene& scene, Vec3 eye)
+{
+    constexpr float flights = 1.5f;
+    constexpr float pixels = 4.0f;
+    Bounds3 box;
+    float densest = 0.0f;
+    for (const Volume& volume : scene.media.volumes) {
+        if (is_void(volume)) continue;
+        box.extend(world_bounds(volume));
+        for (const BrickRange& range : volume.density->ranges) {
+            densest = std::max(densest, range.mean * volume.density_scale);
+        }
+    }
+    const float diagonal = glm::length(box.extent());
+    const float nearest = glm::length(glm::max(Vec3(0.0f), glm::max(box.lo - eye, eye - box.hi)));
+    const float pixel =
+        std::max(nearest, 0.05f * diagonal) / std::sqrt(pixels_per_steradian(scene.camera));
+    const float flight = densest > 0.0f ? flights / densest : diagonal;
+    return std::clamp(std::max(flight, pixels * pixel), 1e-3f * diagonal, 0.125f * diagonal);
+}
+
+}  // namespace
+
+bool can_have_scatter_nodes(const Scene& scene, const PathTracerParams& path)
+{
+    const std::vector<Volume>& volumes = scene.media.volumes;
+    if (path.max_bounces < 2 || std::all_of(volumes.begin(), volumes.end(), is_void)) return false;
+    if (!media_in_view(scene)) return false;
+    for (const Volume& volume : volumes) {
+        if (volume.world_from_object.is_moving()) return false;
+    }
+    if (!scene.surfaces) return true;
+    const std::vector<MeshInstance>& instances = scene.surfaces->bvh->instances();
+    return std::none_of(instances.begin(), instances.end(), [](const MeshInstance& instance) {
+        return instance.world_from_object.is_moving();
+    });
+}
+
+ScatterNodes make_scatter_nodes(const TraceContext& context, const ScatterNodesParams& params)
+{
+    const Scene& scene = context.scene;
+    const double start = process_cpu_seconds();
+    ScatterNodes out;
+    out.eye = Vec3(scene.camera.world_from_camera.at(cache_time).translate);
+    const float spacing = params.spacing > 0.0f ? params.spacing : choose_spacing(scene, out.eye);
+    out.lattice = make_smoke_lattice(scene.media, spacing, 1'000'000);
+    out.phases = list_phases(scene.media);
+    const SmokeLattice& lattice = out.lattice;
+    const size_t slots = lattice.nodes.size();
+    std::vector<NodeView> views(slots);
+    parallel_for(slots - 1, grain, [&](size_t begin, size_t end) {
+        for (size_t i = begin + 1; i < end + 1; ++i) {
+            views[i] = view_of(scene, lattice, lattice.position(lattice.nodes[i]), out.eye);
+        }
+    });
+    // A node's noise reaches each of its pixels with its share: the sum of squares over the image
+    // is least with paths in proportion to the root of pixels times share.
+    double filled = 0.0;
+    double total = 0.0;
+    const auto importance = [](const NodeView& v) { return std::sqrt(v.pixels) * v.share; };
+    for (const NodeView& view : views) {
+        filled += static_cast<double>(view.pixels * view.share);
+        total += static_cast<double>(importance(view));
+    }
+    const double paths = static_cast<double>(params.paths) * params.passes * filled;
+    const auto per_importance = total > 0.0 ? static_cast<float>(paths / total) : 0.0f;
+    out.radiance.assign(out.phases.size() * slots, Spectrum(0.0f));
+    std::vector<int64_t> traced(slots, 0);
+    parallel_for(slots - 1, grain, [&](size_t begin, size_t end) {
+        for (size_t i = begin + 1; i < end + 1; ++i) {
+            const Vec3 node = lattice.position(lattice.nodes[i]);
+            const float mean = std::max(per_importance * importance(views[i]), least_paths);
+            for (size_t p = 0; p < out.phases.size(); ++p) {
+                Rng rng(params.seed, static_cast<uint32_t>(scene.frame), Stream::ScatterNodes,
+                        static_cast<uint32_t>(i), static_cast<uint32_t>(p));
+                out.radiance[p * slots + i] = trace_node(context, out.phases.phases[p], node,
+                                                         out.wo(node), mean, rng, traced[i]);
+            }
+        }
+    });
+    for (const int64_t n : traced) out.paths += n;
+    out.cpu_seconds = process_cpu_seconds() - start;
+    return out;
+}
+
+}  // namespace mote

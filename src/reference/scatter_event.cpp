@@ -1,0 +1,31 @@
+#include "reference/scatter_event.h"
+
+namespace mote {
+namespace {
+
+std::optional<ScatteredDirection> sample_towards(const ScatterEvent& event, Vec3 wo, Rng& rng)
+{
+    if (event.surface) {
+        const std::optional<BsdfSample> s = sample_bsdf(*event.surface, wo, rng.uniform3());
+        if (!s) return std::nullopt;
+        return ScatteredDirection{s->wi, {s->value.cosine * s->value.f, s->value.pdf_dir}};
+    }
+    const Vec3 wi = sample_phase(*event.phase, wo, rng.uniform2());
+    const float phase = phase_pdf(*event.phase, wo, wi);
+    return ScatteredDirection{wi, {Spectrum(phase), phase}};
+}
+
+}  // namespace
+
+std::optional<ScatteredDirection> sample_scattering(const ScatterEvent& event, Rng& rng)
+{
+    if (!event.ways) return sample_towards(event, event.wo, rng);
+    const Vec3 wo = event.ways->wo[rng.uniform() < 0.5f ? 0 : 1];
+    std::optional<ScatteredDirection> s = sample_towards(event, wo, rng);
+    if (!s) return std::nullopt;
+    s->scattering = eval_scattering(event, s->wi);
+    if (!(s->scattering.pdf_dir > 0.0f)) return std::nullopt;
+    return s;
+}
+
+}  // namespace mote

@@ -1,0 +1,220 @@
+// Light of many events by shared rays and by paths of the pixel's own, against the path tracer.
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "core/parallel.h"
+#include "multiscatter/ray_pyramid.h"
+#include "restir/room_scenes.h"
+#include "restir/runs.h"
+
+namespace mote {
+namespace {
+
+using test::TestScene;
+
+TestScene with_bounces(TestScene scene, int max_bounces, const std::string& name)
+{
+    scene.max_bounces = max_bounces;
+    scene.name = name;
+    return scene;
+}
+
+/// 20 x 18 pixels: four tiles, three of them cut.
+void use_large_camera(Scene& scene)
+{
+    scene.camera.width = 20;
+    scene.camera.height = 18;
+}
+
+TestScene dense_cloud(int max_bounces)
+{
+    TestScene out{"dense cloud", test::lit_clumps(25.0f), max_bounces};
+    Volume& volume = out.scene.media.volumes[0];
+    volume.albedo = Spectrum(0.999f);
+    volume.phase = {0.85f};
+    out.scene.lights = {test::sun()};
+    out.scene.environment = test::even_sky();
+    return out;
+}
+
+TestScene lamps_inside(int max_bounces)
+{
+    TestScene out{"lamps inside smoke", test::lit_clumps(3.0f), max_bounces};
+    for (uint32_t i = 0; i < 40; ++i) {
+        Rng rng(5, 0, Stream::Test, i, 0);
+        const Vec3 p = 1.6f * (rng.uniform3() - Vec3(0.5f));
+        const float L = std::exp2(4.0f * rng.uniform());
+        out.scene.lights.emplace_back(SphereLight{p, 0.08f, L * rng.uniform3()});
+    }
+    return out;
+}
+
+/// The camera travels while the shutter is open, through an open lens.
+TestScene moving_camera()
+{
+    TestScene out = test::sun_and_sky();
+    MovingTransform& pose = out.scene.camera.world_from_camera;
+    Trs end = pose.keys[0];
+    end.translate += Vec3d(0.3, -0.1, 0.0);
+    pose.keys.push_back(end);
+    out.scene.camera.lens_radius = 0.05f;
+    out.scene.camera.focus_distance = 3.0f;
+    return out;
+}
+
+TestScene closed_room()
+{
+    return {"closed room", test::room(), 3};
+}
+
+std::vector<TestScene> scenes()
+{
+    std::vector<TestScene> list{with_bounces(test::sun_and_sky(), 2, "two events"),
+                                with_bounces(test::sun_and_sky(), 4, "four events"),
+                                with_bounces(test::sun_and_sky(), 1000, "any number of events"),
+                                dense_cloud(16),
+                                lamps_inside(5),
+                                with_bounces(moving_camera(), 4, "moving camera and lens"),
+                                with_bounces(test::overlapping(), 4, "overlapping volumes"),
+                                with_bounces(test::camera_inside(), 4, "camera inside"),
+                                {"courtyard", test::courtyard(true), 4},
+                                closed_room()};
+    for (TestScene& scene : list) use_large_camera(scene.scene);
+    return list;
+}
+
+void expect_unbiased(const TestScene& scene, const test::Effort& effort, bool tell)
+{
+    const TileStats reference = test::reference_runs(scene, effort);
+    uint32_t seed = 1;
+    for (const IndirectLight indirect : {IndirectLight::Paths, IndirectLight::Shared}) {
+        RenderDescription render = test::description(scene, EstimatorKind::Restir, effort.samples);
+        render.restir.indirect = indirect;
+        const TileStats tested = test::render_runs(scene, render, effort.runs, seed);
+        seed += 1000;
+        const RunComparison comparison = compare_runs(tested, reference);
+        const std::string text = test::summary(
+            scene.name + (indirect == IndirectLight::Paths ? ", paths" : ", shared"), comparison);
+        EXPECT_GT(comparison.p, test::alarm) << text;
+        EXPECT_EQ(comparison.non_finite, 0) << text;
+        if (tell) std::printf("%s\n", text.c_str());
+    }
+}
+
+class SharedRaysStat : public testing::TestWithParam<TestScene> {};
+
+TEST_P(SharedRaysStat, AgreeWithThePathTracer)
+{
+    expect_unbiased(GetParam(), {32, 2, 16}, false);
+}
+
+class SharedRaysLong : public testing::TestWithParam<TestScene> {};
+
+TEST_P(SharedRaysLong, AgreeWithThePathTracerWithinLittle)
+{
+    if (!std::getenv("MOTE_LONG_TESTS")) GTEST_SKIP() << "MOTE_LONG_TESTS is not set";
+    expect_unbiased(GetParam(), {64, 16, 256}, true);
+}
+
+std::string test_name(const testing::TestParamInfo<TestScene>& scene)
+{
+    std::string name;
+    for (const char c : scene.param.name) name += c == ' ' ? '_' : c;
+    return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, SharedRaysStat, testing::ValuesIn(scenes()), test_name);
+INSTANTIATE_TEST_SUITE_P(Scenes, SharedRaysLong, testing::ValuesIn(scenes()), test_name);
+
+/// Albedo 1 in an even environment: radiance 1 everywhere, whatever the smoke.
+TEST(SharedRaysStat, WhiteFurnaceStaysWhite)
+{
+    for (const float g : {0.0f, 0.85f}) {
+        TestScene furnace{"furnace", test::lit_clumps(8.0f), 100'000};
+        furnace.scene.media.volumes[0].albedo = Spectrum(1.0f);
+        furnace.scene.media.volumes[0].phase = {g};
+        furnace.scene.environment = EnvironmentLight{Spectrum(1.0f), nullptr, Mat3(1.0f)};
+        use_large_camera(furnace.scene);
+        RenderDescription render = test::description(furnace, EstimatorKind::Restir, 2);
+        render.restir.indirect = IndirectLight::Shared;
+        RunningStats means;
+        for (uint32_t seed = 1; seed <= 32; ++seed) {
+            render.seed = seed;
+            FrameHistory history;
+            FrameStats stats;
+            OutputDescription output;
+            output.color_type = PixelType::Float;
+            const LayeredImage image =
+                render_frame(furnace.scene, render, output, history, nullptr, stats);
+            double sum = 0.0;
+            const auto values = image.channels[1].values;
+            for (const float v : values) sum += static_cast<double>(v);
+            means.add(sum / static_cast<double>(values.size()));
+        }
+        const MeanEstimate mean = estimate_mean(means);
+        // False alarms: 1e-5 each.
+        EXPECT_TRUE(confidence_interval(mean, 1.0 - 1e-5).contains(1.0))
+            << mean.mean << " +- " << mean.standard_error();
+        EXPECT_LT(mean.standard_error(), 0.01);
+    }
+}
+
+TEST(SharedRays, ImagesAreTheSameForAnyThreadCount)
+{
+    TestScene scene = with_bounces(test::sun_and_sky(), 8, "");
+    use_large_camera(scene.scene);
+    RenderDescription render = test::description(scene, EstimatorKind::Restir, 2);
+    render.restir.indirect = IndirectLight::Shared;
+    for (const ReuseMode reuse : {ReuseMode::Off, ReuseMode::Both}) {
+        render.restir.reuse = reuse;
+        std::vector<float> one;
+        for (const int threads : {1, 2, 3, 8}) {
+            run_with_threads(threads, [&] {
+                FrameHistory history;
+                FrameStats stats;
+                const LayeredImage image =
+                    render_frame(scene.scene, render, {}, history, nullptr, stats);
+                if (threads == 1) one = image.channels[0].values;
+                EXPECT_EQ(image.channels[0].values, one) << threads;
+            });
+        }
+    }
+}
+
+/// Pixels much closer together than free flights are worth sharing; others are not.
+TEST(SharedRays, AreUsedWherePixelsAreClose)
+{
+    TestScene scene = test::sun_and_sky(2.0f);
+    Camera& camera = scene.scene.camera;
+    const auto worth = [&] {
+        const FrameDomain frame = make_frame_domain(
+            test::borrow(scene.scene), make_light_caches(scene.scene, {}, nullptr), {});
+        RayPyramid pyramid;
+        BinCounts counts;
+        const int x = camera.width / 2;
+        const int y = camera.height / 2;
+        make_ray_pyramid(frame, {x, y, x + 16, y + 16}, pyramid, counts);
+        return is_worth_sharing(scene.scene, pyramid);
+    };
+    camera.width = 1920;
+    camera.height = 1080;
+    EXPECT_TRUE(worth());
+    camera.width = 32;
+    camera.height = 32;
+    EXPECT_FALSE(worth());
+}
+
+TEST(SharedRays, NeedAShutterDuringWhichOnlyTheCameraMoves)
+{
+    Scene scene = test::sun_and_sky().scene;
+    EXPECT_TRUE(can_share_rays(scene));
+    scene.camera.world_from_camera.keys.push_back({});
+    EXPECT_TRUE(can_share_rays(scene));
+    scene.media.volumes[0].world_from_object.keys.push_back({});
+    EXPECT_FALSE(can_share_rays(scene));
+}
+
+}  // namespace
+}  // namespace mote
