@@ -157,7 +157,7 @@ TEST_P(SurfaceBiasLong, IsThatDocumentedAndNoMore)
 {
     if (!test::runs_long_tests()) GTEST_SKIP() << "MOTE_LONG_TESTS=1 runs it";
     for (const bool is_moving : {false, true}) {
-        expect_bias(GetParam(), is_moving, {20'000, 0.8, 8.0, 25.0, 10.0, 14.0});
+        expect_bias(GetParam(), is_moving, {10'000, 0.8, 8.0, 25.0, 10.0, 14.0});
     }
 }
 
@@ -168,7 +168,7 @@ TEST(SurfaceBiasLong, IsNotThereInUnbiasedOnes)
     for (const SurfaceForm& form : test::all_surface_forms()) {
         if (!is_unbiased(form.params())) continue;
         for (const bool is_moving : {false, true}) {
-            expect_bias({form, {}, {}}, is_moving, {20'000, 0.8, 2.0, 15.0});
+            expect_bias({form, {}, {}}, is_moving, {10'000, 0.8, 2.0, 15.0});
         }
     }
 }
