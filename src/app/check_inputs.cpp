@@ -124,7 +124,7 @@ std::string title(const char* kind, const std::string& name, size_t index)
     return name.empty() ? fmt::format("{} {}", kind, index) : fmt::format("{} \"{}\"", kind, name);
 }
 
-/// Volumes may ask for attributes that a particle file need not have.
+/// Volumes and lights may ask for attributes that a particle file need not have.
 void require_attributes(const SceneDescription& scene, const ParticlesDescription& system,
                         const std::string& path, const std::vector<std::string>& attributes,
                         bool needs_velocity)
@@ -143,6 +143,11 @@ void require_attributes(const SceneDescription& scene, const ParticlesDescriptio
         require(volume.use_color, "color", "\"use_color\"");
         require(volume.emission.blackbody_scale > 0.0f, "temperature", "blackbody emission");
         require(needs_velocity, "velocity", "the motion layer");
+    }
+    for (const LightDescription& light : scene.lights) {
+        if (light.particles != system.name) continue;
+        require(light.use_color, "color", "\"use_color\"");
+        require(light.use_temperature, "temperature", "\"use_temperature\"");
     }
 }
 

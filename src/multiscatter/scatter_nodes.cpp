@@ -40,6 +40,10 @@ float pixels_per_steradian(const Camera& camera)
 struct NodeView {
     float pixels = 0.0f;
     float share = 0.0f;
+
+    /// A node's noise reaches each of its pixels with its share: the sum of squares over the image
+    /// is least with paths in proportion to this.
+    [[nodiscard]] float importance() const { return std::sqrt(pixels) * share; }
 };
 
 NodeView view_of(const Scene& scene, const SmokeLattice& lattice, Vec3 node, Vec3 eye)
@@ -63,6 +67,43 @@ NodeView view_of(const Scene& scene, const SmokeLattice& lattice, Vec3 node, Vec
     const float T = std::exp(-optical_depth(scene.media, ray, {0.0f, distance}));
     view.share = T * -std::expm1(-h * extinction_around(scene.media, node, h));
     return view;
+}
+
+std::vector<NodeView> views_of(const Scene& scene, const SmokeLattice& lattice, Vec3 eye)
+{
+    std::vector<NodeView> views(lattice.nodes.size());
+    parallel_for(views.size() - 1, grain, [&](size_t begin, size_t end) {
+        for (size_t i = begin + 1; i < end + 1; ++i) {
+            views[i] = view_of(scene, lattice, lattice.position(lattice.nodes[i]), eye);
+        }
+    });
+    return views;
+}
+
+/// How many paths there are to share out, and among how many nodes that matter.
+struct NodeBudget {
+    double paths = 0.0;
+    double nodes = 0.0;
+    float per_importance = 0.0f;
+};
+
+NodeBudget budget_of(const std::vector<NodeView>& views, const ScatterNodesParams& params)
+{
+    double filled = 0.0;
+    double total = 0.0;
+    double squares = 0.0;
+    for (const NodeView& view : views) {
+        const auto importance = static_cast<double>(view.importance());
+        filled += static_cast<double>(view.pixels * view.share);
+        total += importance;
+        squares += importance * importance;
+    }
+    NodeBudget budget;
+    budget.paths = static_cast<double>(params.paths) * params.passes * filled;
+    if (!(total > 0.0)) return budget;
+    budget.nodes = total * total / squares;
+    budget.per_importance = static_cast<float>(budget.paths / total);
+    return budget;
 }
 
 /// Mean of a node's paths. `mean_count` of them are traced on average.
@@ -131,33 +172,25 @@ ScatterNodes make_scatter_nodes(const TraceContext& context, const ScatterNodesP
     ScatterNodes out;
     out.eye = Vec3(scene.camera.world_from_camera.at(cache_time).translate);
     const float spacing = params.spacing > 0.0f ? params.spacing : choose_spacing(scene, out.eye);
-    out.lattice = make_smoke_lattice(scene.media, spacing, 1'000'000);
     out.phases = list_phases(scene.media);
     const SmokeLattice& lattice = out.lattice;
-    const size_t slots = lattice.nodes.size();
-    std::vector<NodeView> views(slots);
-    parallel_for(slots - 1, grain, [&](size_t begin, size_t end) {
-        for (size_t i = begin + 1; i < end + 1; ++i) {
-            views[i] = view_of(scene, lattice, lattice.position(lattice.nodes[i]), out.eye);
-        }
-    });
-    // A node's noise reaches each of its pixels with its share: the sum of squares over the image
-    // is least with paths in proportion to the root of pixels times share.
-    double filled = 0.0;
-    double total = 0.0;
-    const auto importance = [](const NodeView& v) { return std::sqrt(v.pixels) * v.share; };
-    for (const NodeView& view : views) {
-        filled += static_cast<double>(view.pixels * view.share);
-        total += static_cast<double>(importance(view));
+    std::vector<NodeView> views;
+    NodeBudget budget;
+    // Few paths deserve few nodes: one without a path is black, and others make up for it.
+    for (float h = spacing;; h *= 1.4f) {
+        out.lattice = make_smoke_lattice(scene.media, h, 1'000'000);
+        views = views_of(scene, lattice, out.eye);
+        budget = budget_of(views, params);
+        if (budget.paths >= budget.nodes || lattice.active_count() <= 64) break;
     }
-    const double paths = static_cast<double>(params.paths) * params.passes * filled;
-    const auto per_importance = total > 0.0 ? static_cast<float>(paths / total) : 0.0f;
+    const size_t slots = lattice.nodes.size();
+    const float per_importance = budget.per_importance;
     out.radiance.assign(out.phases.size() * slots, Spectrum(0.0f));
     std::vector<int64_t> traced(slots, 0);
     parallel_for(slots - 1, grain, [&](size_t begin, size_t end) {
         for (size_t i = begin + 1; i < end + 1; ++i) {
             const Vec3 node = lattice.position(lattice.nodes[i]);
-            const float mean = std::max(per_importance * importance(views[i]), least_paths);
+            const float mean = std::max(per_importance * views[i].importance(), least_paths);
             for (size_t p = 0; p < out.phases.size(); ++p) {
                 Rng rng(params.seed, static_cast<uint32_t>(scene.frame), Stream::ScatterNodes,
                         static_cast<uint32_t>(i), static_cast<uint32_t>(p));

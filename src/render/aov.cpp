@@ -97,6 +97,14 @@ std::vector<AovInfo> make_table()
          {"P.X", "P.Y", "P.Z"},
          true,
          "Place of the first surface on the camera ray, likewise [m]"},
+        {Aov::MaterialId,
+         "material_id",
+         {"material_id.Y"},
+         true,
+         "Material of the first surface on the camera ray, smoke in front or not, as a whole "
+         "number: of the pixel's samples that which meets one nearest, never a mean. 1, 2, ... in "
+         "the order in which the scene's objects bring them, the same for all that look the same; "
+         "0: no surface"},
     };
 }
 

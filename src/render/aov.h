@@ -29,8 +29,9 @@ enum class Aov {
     Emission,
     Normal,
     Position,
+    MaterialId,
 };
-inline constexpr size_t aov_count = 20;
+inline constexpr size_t aov_count = 21;
 
 /// One row of the table of layers.
 struct AovInfo {
@@ -57,7 +58,7 @@ class AovSet {
     /// Whether any of them tells of the first surface on the camera ray, media in front or not.
     [[nodiscard]] bool needs_first_surface() const
     {
-        return has(Aov::Normal) || has(Aov::Position);
+        return has(Aov::Normal) || has(Aov::Position) || has(Aov::MaterialId);
     }
     /// Whether any of them tells of first collisions.
     [[nodiscard]] bool needs_first_collision() const

@@ -159,6 +159,8 @@ void begin_surface(const PassInputs& inputs, const PassKey& key, PassDomain& dom
     sample.has_surface = true;
     sample.normal = glm::dot(v.ng, wo) > 0.0f ? v.ns : -v.ns;
     sample.position = v.p;
+    sample.surface_distance = domain.surface.distance;
+    sample.material = inputs.domain.scene->surfaces->material_index(v.object);
 }
 
 }  // namespace

@@ -36,6 +36,10 @@ bool PixelFilm::add(const FilmSample& sample)
         ++surfaces_;
         normal_.add(sample.normal);
         position_.add(sample.position);
+        if (sample.surface_distance < nearest_surface_) {
+            nearest_surface_ = sample.surface_distance;
+            material_ = sample.material;
+        }
     }
     const double tau = static_cast<double>(sample.optical_depth);
     transmittance_ += static_cast<double>(sample.transmittance);
@@ -141,6 +145,9 @@ void PixelFilm::layer(Aov aov, float (&values)[3]) const
             break;
         case Aov::Position:
             store(position_.mean(surfaces_));
+            break;
+        case Aov::MaterialId:
+            values[0] = static_cast<float>(material_ + 1);
             break;
         case Aov::Restir:
             store(reservoir_.mean(count()));

@@ -26,6 +26,8 @@ struct FilmSample {
     float depth = infinity;      ///< of the first collision or surface, along the view axis [m]
     Vec3 normal{0.0f};           ///< of the first surface, towards the camera [unit]
     Vec3 position{0.0f};         ///< of the first surface [m]
+    float surface_distance = infinity;  ///< of the first surface, along the ray [m]
+    int material = -1;                  ///< of the first surface, into Surfaces::materials
     Spectrum albedo{0.0f};
     Vec2 motion{0.0f};           ///< [px], v up
     float optical_depth = 0.0f;  ///< in closed form, where a layer needs it
@@ -74,6 +76,8 @@ class PixelFilm {
     double exact_rays_ = 0.0;
     double depth_ = 0.0;
     float nearest_ = infinity;
+    float nearest_surface_ = infinity;
+    int material_ = -1;       ///< of the sample with that surface
     int64_t collisions_ = 0;  ///< samples that met smoke or a surface
     int64_t in_smoke_ = 0;    ///< those of them in smoke, of which depth_ is
     int64_t surfaces_ = 0;    ///< samples with a surface, smoke in front or not

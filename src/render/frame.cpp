@@ -38,6 +38,8 @@ float add_first_surface(const Surfaces& surfaces, const Ray& ray, FilmSample& sa
     sample.has_surface = true;
     sample.normal = glm::dot(vertex.ng, ray.d) < 0.0f ? vertex.ns : -vertex.ns;
     sample.position = vertex.p;
+    sample.surface_distance = hit->t;
+    sample.material = surfaces.material_index(hit->object);
     return hit->t;
 }
 

@@ -178,7 +178,7 @@ void ReusingFrame::pass_over_surfaces(const ReusePlan& plan, uint32_t pass,
     if (plan.surface_temporal && before.surfaces.size() > 0) {
         const bool still = !change_between(before.frame, frame).any();
         for_tiles([&](const Tile& tile, PassCounts& n) {
-            Combination scratch(surface_rules(temporal_rules(frame.params, still)));
+            Combination scratch(surface_temporal_rules(frame.params, still));
             reuse_surfaces_in_time({frame, now.surfaces, surfaces.current}, before, still, tile,
                                    rng(Stream::SurfaceTemporal, pass), scratch, out, n.light_rays,
                                    n.reuse);
@@ -193,7 +193,7 @@ void ReusingFrame::pass_over_surfaces(const ReusePlan& plan, uint32_t pass,
     if (!frame.params.surface.feedback) keep();
     if (plan.surface_spatial) {
         for_tiles([&](const Tile& tile, PassCounts& n) {
-            Combination scratch(surface_rules(spatial_rules(frame.params)));
+            Combination scratch(surface_spatial_rules(frame.params));
             reuse_surfaces_in_space({frame, now.surfaces, surfaces.current}, tile,
                                     rng(Stream::SurfaceSpatial, pass), scratch, out, n.light_rays,
                                     n.reuse);
@@ -201,6 +201,11 @@ void ReusingFrame::pass_over_surfaces(const ReusePlan& plan, uint32_t pass,
         std::swap(surfaces.current, surfaces.next);
     }
     if (frame.params.surface.feedback) keep();
+    if (frame.params.surface.visibility == SurfaceVisibility::None) {
+        for_tiles([&](const Tile& tile, PassCounts& n) {
+            shade_surface_reservoirs(frame, tile, now.surfaces, surfaces, n);
+        });
+    }
     for (size_t i = 0; i < now.surfaces.size(); ++i) {
         buffers.samples.data()[i].surface_direct +=
             now.surfaces.data()[i].share * surfaces.colors.data()[i];

@@ -1,8 +1,24 @@
 #include "render/surface_pass.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace mote {
+namespace {
+
+/// Gives a reservoir its own sample's light: `f` without shadow, `T` what the ray found. Targets
+/// of reuse are compared between pixels, so p_hat must not keep what caches knew.
+void set_light(PixelReservoir& own, SurfaceVisibility visibility, Spectrum f, float T)
+{
+    const bool is_exact = visibility == SurfaceVisibility::Exact;
+    own.f = is_exact ? T * f : f;
+    own.r.V = is_exact ? 1.0f : T;
+    own.r.p_hat = luminance(own.f);
+    const bool is_dropped = visibility == SurfaceVisibility::Reused && !(T > 0.0f);
+    if (!(own.r.p_hat > 0.0f) || is_dropped) own.r.W = 0.0f;
+}
+
+}  // namespace
 
 void resample_surface(const PassInputs& inputs, const PassKey& key, const SurfaceDomain& domain,
                       SurfaceChoice& choice, PassCounts& counts)
@@ -52,6 +68,7 @@ void fill_surface_reservoirs(const PassInputs& inputs, const Tile& tile, uint32_
                              Buffer2D<FilmSample>& samples, PassCounts& counts)
 {
     const FrameDomain& frame = inputs.domain;
+    const SurfaceVisibility visibility = frame.params.surface.visibility;
     LightRays rays;
     LightRays apart;
     std::vector<PixelReservoir*> owners;
@@ -72,6 +89,10 @@ void fill_surface_reservoirs(const PassInputs& inputs, const Tile& tile, uint32_
             own = choice.kept;
             if (!(own.r.W > 0.0f)) continue;
             const Candidate c = evaluate(frame, domain, own.r.y);
+            if (visibility == SurfaceVisibility::None) {
+                set_light(own, visibility, c.f, 1.0f);
+                continue;
+            }
             const auto owner = static_cast<int>(owners.size());
             owners.push_back(&own);
             rays.add(owner, c.x, c.arrival.wi, c.arrival.distance, domain.time, c.f, infinity);
@@ -80,10 +101,8 @@ void fill_surface_reservoirs(const PassInputs& inputs, const Tile& tile, uint32_
     }
     rays.trace(*frame.scene, counts.light_rays);
     for (size_t i = 0; i < rays.size(); ++i) {
-        PixelReservoir& own = *owners[static_cast<size_t>(rays.owners[i])];
-        own.f = rays.value(i);
-        own.r.p_hat = luminance(own.f);
-        if (!(own.r.p_hat > 0.0f)) own.r.W = 0.0f;
+        set_light(*owners[static_cast<size_t>(rays.owners[i])], visibility, rays.weights[i],
+                  std::exp(-rays.depths[i]));
     }
     apart.trace(*frame.scene, counts.light_rays);
     for (size_t i = 0; i < apart.size(); ++i) {
@@ -94,8 +113,33 @@ void fill_surface_reservoirs(const PassInputs& inputs, const Tile& tile, uint32_
     for (int y = tile.y0; y < tile.y1; ++y) {
         for (int x = tile.x0; x < tile.x1; ++x) {
             const PixelReservoir& own = out.current.at(x, y);
-            if (own.r.W > 0.0f) out.colors.at(x, y) = own.r.W * own.f;
+            if (own.r.W > 0.0f) out.colors.at(x, y) = (own.r.V * own.r.W) * own.f;
         }
+    }
+}
+
+void shade_surface_reservoirs(const FrameDomain& frame, const Tile& tile,
+                              const Buffer2D<SurfaceDomain>& domains, SurfaceBuffers& out,
+                              PassCounts& counts)
+{
+    LightRays rays;
+    std::vector<Spectrum*> owners;
+    for (int y = tile.y0; y < tile.y1; ++y) {
+        for (int x = tile.x0; x < tile.x1; ++x) {
+            out.colors.at(x, y) = Spectrum(0.0f);
+            const PixelReservoir& own = out.current.at(x, y);
+            if (!(own.r.W > 0.0f)) continue;
+            const SurfaceDomain& domain = domains.at(x, y);
+            const Candidate c = evaluate(frame, domain, own.r.y);
+            const auto owner = static_cast<int>(owners.size());
+            owners.push_back(&out.colors.at(x, y));
+            rays.add(owner, c.x, c.arrival.wi, c.arrival.distance, domain.time, own.r.W * c.f,
+                     infinity);
+        }
+    }
+    rays.trace(*frame.scene, counts.light_rays);
+    for (size_t i = 0; i < rays.size(); ++i) {
+        *owners[static_cast<size_t>(rays.owners[i])] = rays.value(i);
     }
 }
 

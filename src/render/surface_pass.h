@@ -35,10 +35,17 @@ struct SurfaceBuffers {
     Buffer2D<Spectrum> colors;  ///< light of the reservoirs, media in front of the surface apart
 };
 
-/// The surfaces' own reservoirs of a tile, each with its exact shadow: targets of reuse have them.
-/// Lights that are shaded all go into `samples`.
+/// The surfaces' own reservoirs of a tile as surface.visibility has them: with exact shadows in
+/// their targets, without (`colors` is not filled then), or with V. Lights that are shaded all go
+/// into `samples`.
 void fill_surface_reservoirs(const PassInputs& inputs, const Tile& tile, uint32_t pass,
                              const Buffer2D<SurfaceDomain>& domains, SurfaceBuffers& out,
                              Buffer2D<FilmSample>& samples, PassCounts& counts);
+
+/// Fills `colors` of a tile: the chosen samples, each shaded by an exact ray. For targets that know
+/// no shadows.
+void shade_surface_reservoirs(const FrameDomain& frame, const Tile& tile,
+                              const Buffer2D<SurfaceDomain>& domains, SurfaceBuffers& out,
+                              PassCounts& counts);
 
 }  // namespace mote

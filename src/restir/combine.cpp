@@ -40,13 +40,17 @@ void Combination::clear()
 {
     pixels_.clear();
     others_.clear();
+    sites_.clear();
+    targets_.clear();
+    chosen_.clear();
     here_.clear();
     there_.clear();
+    target_rays_.clear();
 }
 
 int Combination::begin_pixel(const PixelReservoir& own)
 {
-    pixels_.push_back({&own, others_.size(), 0});
+    pixels_.push_back({&own, others_.size(), 0, 0});
     return static_cast<int>(pixels_.size()) - 1;
 }
 
@@ -68,21 +72,31 @@ void Combination::add_other(const ShiftEnd& own, const ShiftEnd& from, const Res
     std::optional<Shifted> here;
     std::optional<Shifted> own_there;
     if (other.W > 0.0f) here = shifted(other.y, from, own, map);
-    if (mine.W > 0.0f) own_there = shifted(mine.y, own, from, map.inverse());
+    if (mine.W > 0.0f && compares_targets(rules_.mis)) {
+        own_there = shifted(mine.y, own, from, map.inverse());
+    }
     add(other, confidence, here, own_there);
+}
+
+std::optional<Combination::Shifted> Combination::taken(const PathSample& y, const FrameDomain& from,
+                                                       const SurfaceEnd& to) const
+{
+    if (!has_equal_measure(from, to.frame, y.light)) return std::nullopt;
+    Shifted out{evaluate(to.frame, to.domain, y), 1.0f, to.domain.time};
+    out.c.known = known_visibility(rules_.visibility, to.frame, out.c);
+    return out;
 }
 
 void Combination::add_other(const SurfaceEnd& own, const SurfaceEnd& from, const Reservoir& other,
                             float confidence)
 {
-    const auto taken = [&](const Reservoir& r, const SurfaceEnd& a,
-                           const SurfaceEnd& b) -> std::optional<Shifted> {
-        if (!(r.W > 0.0f) || !has_equal_measure(a.frame, b.frame, r.y.light)) return std::nullopt;
-        Shifted out{evaluate(b.frame, b.domain, r.y), 1.0f, b.domain.time};
-        out.c.known = known_visibility(rules_.visibility, b.frame, out.c);
-        return out;
-    };
-    add(other, confidence, taken(other, from, own), taken(pixels_.back().own->r, own, from));
+    const Reservoir& mine = pixels_.back().own->r;
+    std::optional<Shifted> here;
+    std::optional<Shifted> own_there;
+    if (other.W > 0.0f) here = taken(other.y, from.frame, own);
+    if (mine.W > 0.0f && compares_targets(rules_.mis)) own_there = taken(mine.y, own.frame, from);
+    sites_.push_back({&own.frame, &from.frame, &from.domain});
+    add(other, confidence, here, own_there);
 }
 
 void Combination::add(const Reservoir& other, float confidence, const std::optional<Shifted>& here,
@@ -96,73 +110,78 @@ void Combination::add(const Reservoir& other, float confidence, const std::optio
     out.W = other.W;
     out.M = confidence;
     out.age = other.age;
-    const bool asks = rules_.visibility == TargetVisibility::Exact;
+    out.V = other.V;
     if (here) {
         out.y = here->c.y;
         out.jacobian = here->jacobian;
         out.f = here->c.f;
         out.shadow = here->c.known;
-        if (asks) ask(here_, index, here->c, here->time, 1.0f);
+        if (knows_all() || rules_.traces_V) ask(here_, index, here->c, here->time, 1.0f);
     }
     if (own_there) {
         const Candidate& c = own_there->c;
         out.own_there = own_there->jacobian * c.known * luminance(c.f);
-        if (asks) ask(there_, index, c, own_there->time, own_there->jacobian);
+        if (knows_all()) ask(there_, index, c, own_there->time, own_there->jacobian);
     }
 }
 
 void Combination::trace(const Scene& here, const Scene& there, WalkCounts& counts)
 {
-    if (rules_.visibility != TargetVisibility::Exact) return;
-    for (Other& other : others_) other.shadow = other.own_there = 0.0f;
+    for (Other& other : others_) {
+        if (knows_all()) other.shadow = other.own_there = 0.0f;
+        if (rules_.traces_V) other.V = 0.0f;
+    }
     here_.trace(here, counts);
     for (size_t i = 0; i < here_.size(); ++i) {
-        others_[static_cast<size_t>(here_.owners[i])].shadow = std::exp(-here_.depths[i]);
+        Other& other = others_[static_cast<size_t>(here_.owners[i])];
+        (knows_all() ? other.shadow : other.V) = std::exp(-here_.depths[i]);
     }
     there_.trace(there, counts);
     for (size_t i = 0; i < there_.size(); ++i) {
         others_[static_cast<size_t>(there_.owners[i])].own_there = luminance(there_.value(i));
     }
+    if (rules_.mis == MisForm::Balance) {
+        ask_crosses();
+        trace_targets(there, counts);
+    }
 }
 
-PixelReservoir Combination::finish(int index, Rng& rng, Spectrum& color) const
+void Combination::ask_target(const PathSample& y, size_t other, size_t slot)
 {
-    const Pixel& pixel = pixels_[static_cast<size_t>(index)];
-    const Reservoir& mine = pixel.own->r;
-    Confidences c{mine.M, 0.0f};
-    for (size_t i = 0; i < pixel.count; ++i) c.others += others_[pixel.first + i].M;
-    RisStream stream;
-    stream.count(c.sum());
-    PixelReservoir out;
-    color = Spectrum(0.0f);
-
-    float m_0 = own_weight_base(rules_.mis, c);
-    for (size_t i = 0; i < pixel.count; ++i) {
-        const Other& other = others_[pixel.first + i];
-        m_0 += own_weight_term(rules_.mis, c, other.M, other.own_there, mine.p_hat);
+    const Site& site = sites_[other];
+    const std::optional<Shifted> there = taken(y, *site.own, {*site.frame, *site.domain});
+    if (!there) return;
+    if (knows_all()) {
+        ask(target_rays_, slot, there->c, there->time, 1.0f);
+    } else {
+        targets_[slot] = there->c.known * luminance(there->c.f);
     }
-    const double w_0 =
-        static_cast<double>(m_0) * static_cast<double>(mine.p_hat) * static_cast<double>(mine.W);
-    if (mine.W > 0.0f && m_0 > 0.0f) color += (m_0 * mine.W) * pixel.own->f;
-    if (stream.add(mine.y, mine.p_hat, w_0, mine.age, rng.uniform())) out.f = pixel.own->f;
+}
 
-    for (size_t i = 0; i < pixel.count; ++i) {
-        const Other& other = others_[pixel.first + i];
-        const Spectrum f = other.shadow * other.f;
-        const float p_hat = luminance(f);
-        const float u = rng.uniform();
-        if (!(p_hat > 0.0f) || !(other.jacobian > 0.0f)) continue;
-        // The other's own target at this sample, pulled back: known without another evaluation.
-        const float pulled_back = other.p_hat_there / other.jacobian;
-        const float m = other_weight(rules_.mis, c, other.M, pulled_back, p_hat);
-        const float weight = m * other.W * other.jacobian;
-        if (!(weight > 0.0f) || !std::isfinite(weight)) continue;
-        color += weight * f;
-        const double w = static_cast<double>(weight) * static_cast<double>(p_hat);
-        if (stream.add(other.y, p_hat, w, other.age, u)) out.f = f;
+void Combination::ask_crosses()
+{
+    for (Pixel& pixel : pixels_) {
+        if (pixel.count < 2) continue;
+        MOTE_ASSERT(sites_.size() == others_.size());
+        pixel.first_cross = targets_.size();
+        targets_.resize(targets_.size() + pixel.count * pixel.count, 0.0f);
+        for (size_t i = 0; i < pixel.count; ++i) {
+            const Other& other = others_[pixel.first + i];
+            if (!(other.p_hat() > 0.0f)) continue;  // is never chosen
+            for (size_t j = 0; j < pixel.count; ++j) {
+                if (j == i) continue;
+                ask_target(other.y, pixel.first + j, pixel.first_cross + i * pixel.count + j);
+            }
+        }
     }
-    out.r = stream.finish();
-    return out;
+}
+
+void Combination::trace_targets(const Scene& there, WalkCounts& counts)
+{
+    target_rays_.trace(there, counts);
+    for (size_t i = 0; i < target_rays_.size(); ++i) {
+        targets_[static_cast<size_t>(target_rays_.owners[i])] = luminance(target_rays_.value(i));
+    }
 }
 
 }  // namespace mote

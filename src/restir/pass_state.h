@@ -14,7 +14,7 @@ struct PixelReservoir {
 };
 
 /// A pass that later ones may reuse: what its samples depend on, and the samples. Everything per
-/// pixel: 36 bytes of reservoir and the packed domain; with surfaces another reservoir and 150
+/// pixel: 40 bytes of reservoir and the packed domain; with surfaces another reservoir and 150
 /// bytes of surface domain.
 struct FinishedPass {
     FrameDomain frame;

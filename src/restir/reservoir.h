@@ -11,6 +11,9 @@ struct Reservoir {
     float W = 0.0f;      ///< unbiased contribution weight; 0 = empty
     float M = 0.0f;      ///< confidence [passes]: 1 when fresh, whatever its candidate count
     float age = 0.0f;    ///< passes since y was drawn
+    /// What p_hat leaves out of y's visibility, as far as it is known [0,1]: 1 where targets know
+    /// shadows.
+    float V = 1.0f;
 };
 static_assert(sizeof(Reservoir) <= 48);
 
@@ -43,7 +46,7 @@ struct RisStream {
     [[nodiscard]] Reservoir finish() const
     {
         const double W = p_hat_y > 0.0f ? w_sum / static_cast<double>(p_hat_y) : 0.0;
-        return {y, p_hat_y, static_cast<float>(W), M, age_y};
+        return {y, p_hat_y, static_cast<float>(W), M, age_y, 1.0f};
     }
 };
 

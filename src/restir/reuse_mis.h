@@ -15,18 +15,22 @@ struct Confidences {
 };
 
 /// Which of the weights below a combination uses; one form for all its inputs.
-enum class MisForm { Pairwise, Balance, Constant };
+enum class MisForm { Pairwise, Balance, Contribution, Constant };
 
 /// Resampling MIS weights of a pixel's own sample (index 0) and of `n` others, each a partition of
 /// unity at every sample y:
 ///   Pairwise  A_i(y) = k p_i / (k p_i + c_0 p_0), at most p_i / p_0, k the others' confidence;
 ///             m_i = c_i / C * A_i,  m_0 = c_0 / C + sum_j c_j / C * (1 - A_j).
 ///             Defensive; the bound keeps one input's weight from exploding where targets differ.
-///   Balance   of one other input: m_1 = c_1 p_1 / (c_1 p_1 + c_0 p_0), m_0 = 1 - m_1.
+///   Balance   m_i = c_i p_i / sum_j c_j p_j, the generalised balance heuristic: needs all inputs'
+///             targets at every sample, so its cost is quadratic in their number.
 ///   Constant  m_i = c_i / C: biased where an input cannot produce y.
+///   Contribution  chooses by Constant, then the chosen sample's W counts C / Z times, Z the
+///             confidence of the inputs that could have produced it: unbiased, linear, noisier.
 /// p_0 and p_i are targets at y: the pixel's own, and the other's pulled back to the pixel
 /// (Jacobian included, 0 where undefined). After the defensive pairwise MIS of Bitterli 2022 and
-/// Lin et al. 2022.
+/// Lin et al. 2022; Balance: Talbot 2005, Lin et al. 2022; Contribution: the 1/Z of Bitterli et al.
+/// 2020, Alg. 6, with confidences.
 [[nodiscard]] inline float pairwise_share(const Confidences& c, float p_other, float p_own)
 {
     const double other = static_cast<double>(c.others) * static_cast<double>(p_other);
@@ -37,40 +41,43 @@ enum class MisForm { Pairwise, Balance, Constant };
     return static_cast<float>(std::min(other / (other + own), bound));
 }
 
-/// m_i of another input at its own sample.
+/// m_i of another input at its own sample; not for Balance.
 [[nodiscard]] inline float other_weight(MisForm form, const Confidences& c, float c_other,
                                         float p_other, float p_own)
 {
-    switch (form) {
-        case MisForm::Pairwise:
-            return c_other / c.sum() * pairwise_share(c, p_other, p_own);
-        case MisForm::Balance: {
-            const float other = c_other * p_other;
-            return other > 0.0f ? other / (other + c.own * p_own) : 0.0f;
-        }
-        case MisForm::Constant:
-            return c_other / c.sum();
-    }
-    return 0.0f;
+    const float share = c_other / c.sum();
+    return form == MisForm::Pairwise ? share * pairwise_share(c, p_other, p_own) : share;
 }
 
-/// What another input leaves of m_0 at the pixel's own sample: m_0 = base + sum of these.
-[[nodiscard]] inline float own_weight_base(MisForm form, const Confidences& c)
-{
-    return form == MisForm::Balance ? 1.0f : c.own / c.sum();
-}
+/// What another input leaves of m_0 at the pixel's own sample: m_0 = c_0 / C + sum of these; not
+/// for Balance.
 [[nodiscard]] inline float own_weight_term(MisForm form, const Confidences& c, float c_other,
                                            float p_other, float p_own)
 {
-    switch (form) {
-        case MisForm::Pairwise:
-            return c_other / c.sum() * (1.0f - pairwise_share(c, p_other, p_own));
-        case MisForm::Balance:
-            return -other_weight(form, c, c_other, p_other, p_own);
-        case MisForm::Constant:
-            return 0.0f;
+    if (form != MisForm::Pairwise) return 0.0f;
+    return c_other / c.sum() * (1.0f - pairwise_share(c, p_other, p_own));
+}
+
+/// Confidence times target, summed over all inputs at one sample: the denominator of Balance.
+struct TargetSum {
+    double sum = 0.0;
+
+    void add(float confidence, float p)
+    {
+        sum += static_cast<double>(confidence) * static_cast<double>(p);
     }
-    return 0.0f;
+    /// The weight of an input that is part of the sum; 0 where nobody can have made the sample.
+    [[nodiscard]] float share(float confidence, float p) const
+    {
+        if (!(p > 0.0f)) return 0.0f;
+        return static_cast<float>(static_cast<double>(confidence) * static_cast<double>(p) / sum);
+    }
+};
+
+/// Whether the weight of the pixel's own sample depends on the others' targets there.
+[[nodiscard]] inline bool compares_targets(MisForm form)
+{
+    return form == MisForm::Pairwise || form == MisForm::Balance;
 }
 
 }  // namespace mote

@@ -57,6 +57,9 @@ CombineRules temporal_rules(const RestirParams& params, bool still)
         case ReuseMis::Constant:
             rules.mis = MisForm::Constant;
             break;
+        case ReuseMis::Contribution:
+            rules.mis = MisForm::Contribution;
+            break;
     }
     return rules;
 }

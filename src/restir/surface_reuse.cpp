@@ -30,6 +30,30 @@ Vec3 earlier_position(const FrameDomain& before, const FrameDomain& now,
     return Vec3(there.point(here.inverse * (Vec3d(domain.v.p) - here.offset)));
 }
 
+CombineRules with_visibility(CombineRules rules, SurfaceVisibility visibility)
+{
+    const bool is_exact = visibility == SurfaceVisibility::Exact;
+    rules.visibility = is_exact ? TargetVisibility::Exact : TargetVisibility::None;
+    rules.averages_V = visibility == SurfaceVisibility::Weighted;
+    return rules;
+}
+
+/// As finish_tile, with the choice ahead where weights depend on it.
+void finish_surfaces(const Tile& tile, const PixelRng& rng, const Scene& there,
+                     Combination& combination, const ReuseOutput& out, WalkCounts& walks)
+{
+    if (combination.chooses_first()) {
+        for (int y = tile.y0; y < tile.y1; ++y) {
+            for (int x = tile.x0; x < tile.x1; ++x) {
+                Rng numbers = rng(x, y);
+                combination.choose(numbers);
+            }
+        }
+        combination.trace_chosen(there, walks);
+    }
+    finish_tile(tile, rng, combination, out);
+}
+
 }  // namespace
 
 std::optional<PreviousSurface> previous_surface(const FrameDomain& before, const FrameDomain& now,
@@ -54,9 +78,20 @@ bool is_similar(const SurfaceDomain& own, const SurfaceDomain& other, float dist
            is_alike(own.v.material, other.v.material);
 }
 
-CombineRules surface_rules(CombineRules rules)
+CombineRules surface_temporal_rules(const RestirParams& params, bool still)
 {
-    rules.visibility = TargetVisibility::Exact;
+    RestirParams own = params;
+    own.mis = surface_mis(params);
+    return with_visibility(temporal_rules(own, still), params.surface.visibility);
+}
+
+CombineRules surface_spatial_rules(const RestirParams& params)
+{
+    RestirParams own = params;
+    own.mis = surface_mis(params);
+    if (own.mis == ReuseMis::Auto) own.mis = ReuseMis::Pairwise;
+    CombineRules rules = with_visibility(temporal_rules(own, false), params.surface.visibility);
+    rules.traces_V = params.surface.visibility == SurfaceVisibility::Weighted;
     return rules;
 }
 
@@ -90,7 +125,7 @@ void reuse_surfaces_in_time(const SurfaceView& pass, const FinishedPass& before,
         }
     }
     scratch.trace(*pass.frame.scene, *before.frame.scene, walks);
-    finish_tile(tile, rng, scratch, out);
+    finish_surfaces(tile, rng, *before.frame.scene, scratch, out, walks);
 }
 
 void reuse_surfaces_in_space(const SurfaceView& pass, const Tile& tile, const PixelRng& rng,
@@ -125,7 +160,7 @@ void reuse_surfaces_in_space(const SurfaceView& pass, const Tile& tile, const Pi
         }
     }
     scratch.trace(*pass.frame.scene, *pass.frame.scene, walks);
-    finish_tile(tile, after_turn(rng), scratch, out);
+    finish_surfaces(tile, after_turn(rng), *pass.frame.scene, scratch, out, walks);
 }
 
 }  // namespace mote

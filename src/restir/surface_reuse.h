@@ -27,9 +27,10 @@ struct PreviousSurface {
 /// stays unbiased. `distance`: that at which `other` is expected [m].
 [[nodiscard]] bool is_similar(const SurfaceDomain& own, const SurfaceDomain& other, float distance);
 
-/// The rules between surfaces: the caches know too little beside walls, so targets have their exact
-/// shadows whatever they have in media.
-[[nodiscard]] CombineRules surface_rules(CombineRules rules);
+/// The rules between surfaces: the caches know too little beside walls, so targets have exact
+/// shadows or none, as surface.visibility says, whatever they have in media.
+[[nodiscard]] CombineRules surface_temporal_rules(const RestirParams& params, bool still);
+[[nodiscard]] CombineRules surface_spatial_rules(const RestirParams& params);
 
 /// Combines each pixel's surface reservoir of a tile with that of the pixel it was in the pass
 /// before, if that is similar. As reuse_in_time.

@@ -26,6 +26,7 @@ inline constexpr std::array aov_names = {
     "emission",
     "N",
     "P",
+    "material_id",
 };
 
 }  // namespace mote

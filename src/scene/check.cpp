@@ -99,7 +99,19 @@ struct Checker {
         }
     }
 
+    /// Particle systems are meant by name.
+    void check_system(std::initializer_list<std::string_view> path, const std::string& name)
+    {
+        std::vector<std::string> systems;
+        for (const ParticlesDescription& p : scene.particles) systems.push_back(p.name);
+        const bool is_known = std::find(systems.begin(), systems.end(), name) != systems.end();
+        if (name.empty() || is_known) return;
+        report(path, "no [[particles]] entry is named \"{}\"{}", printable(name, 60),
+               did_you_mean(name, systems));
+    }
+
     void check_camera();
+    void check_particle_lights(size_t i);
     void check_volumes();
     void check_particles();
     void check_lights();
@@ -158,8 +170,6 @@ void Checker::check_camera()
 
 void Checker::check_volumes()
 {
-    std::vector<std::string> systems;
-    for (const ParticlesDescription& p : scene.particles) systems.push_back(p.name);
     for (size_t i = 0; i < scene.volumes.size(); ++i) {
         const VolumeDescription& volume = scene.volumes[i];
         const std::string index = std::to_string(i);
@@ -175,12 +185,7 @@ void Checker::check_volumes()
         if (volume.file && volume.file->pattern.empty()) {
             report({"volumes", index, "file"}, "\"file\" in [volumes] is empty");
         }
-        const bool is_known =
-            std::find(systems.begin(), systems.end(), volume.particles) != systems.end();
-        if (!volume.particles.empty() && !is_known) {
-            report({"volumes", index, "particles"}, "no [[particles]] entry is named \"{}\"{}",
-                   printable(volume.particles, 60), did_you_mean(volume.particles, systems));
-        }
+        check_system({"volumes", index, "particles"}, volume.particles);
         if (volume.procedural) {
             const Vec3d voxels =
                 Vec3d(volume.procedural->size) / static_cast<double>(volume.procedural->voxel_size);
@@ -236,7 +241,33 @@ void Checker::check_lights()
         if (glm::any(glm::lessThan(light.spread, Vec3(0.0f)))) {
             report({"lights", index, "spread"}, "\"spread\" in [lights] must not be negative");
         }
+        if (light.kind == LightKind::Sphere) check_particle_lights(i);
         check_transforms("lights", i, light.transform);
+    }
+}
+
+/// Particles bring places and sizes; what is about them needs them.
+void Checker::check_particle_lights(size_t i)
+{
+    const std::string index = std::to_string(i);
+    const bool has_particles = !scene.lights[i].particles.empty();
+    check_system({"lights", index, "particles"}, scene.lights[i].particles);
+    const Node* list = root.find("lights");
+    const bool in_file = list && list->kind == Node::Kind::Array && i < list->children.size();
+    if (!in_file) return;
+    const Node& table = list->children[i];
+    if (has_particles) {
+        for (const char* key : {"position", "radius", "count", "spread", "seed"}) {
+            if (!table.find(key)) continue;
+            report({"lights", index, key},
+                   "\"{}\" of a light with \"particles\" comes from the particles; leave it out",
+                   key);
+        }
+        return;
+    }
+    for (const char* key : {"radius_scale", "use_color", "use_temperature"}) {
+        if (!table.find(key)) continue;
+        report({"lights", index, key}, "\"{}\" of a light needs \"particles\"", key);
     }
 }
 

@@ -109,15 +109,19 @@ struct LightDescription {
     Vec3 direction{0.0f, 1.0f, 0.0f};  ///< distant: towards the light; spot: from it
     Vec3 edge_u{1.0f, 0.0f, 0.0f}, edge_v{0.0f, 0.0f, 1.0f};  ///< quad [m]
     float cone_angle = 45.0f;                                 ///< spot: from side to side [degrees]
-    float blend = 0.2f;      ///< spot: share of the cone that fades, [0,1]
-    float radius = 0.1f;     ///< sphere [m]
-    Spectrum color{1.0f};    ///< multiplies strength
-    float strength = 1.0f;   ///< point: [W/sr]; distant: [W/m^2]; others: [W/(m^2 sr)]
-    bool two_sided = false;  ///< quad
-    std::string image;       ///< environment: .exr, .hdr or .png file
-    int count = 1;           ///< point, sphere: this many copies scattered over `spread`
-    Vec3 spread{0.0f};       ///< edges of the box around `position` for the copies [m]
-    uint32_t seed = 1;       ///< of the scattering
+    float blend = 0.2f;            ///< spot: share of the cone that fades, [0,1]
+    float radius = 0.1f;           ///< sphere [m]
+    Spectrum color{1.0f};          ///< multiplies strength
+    float strength = 1.0f;         ///< point: [W/sr]; distant: [W/m^2]; others: [W/(m^2 sr)]
+    bool two_sided = false;        ///< quad
+    std::string image;             ///< environment: .exr, .hdr or .png file
+    int count = 1;                 ///< point, sphere: this many copies scattered over `spread`
+    Vec3 spread{0.0f};             ///< edges of the box around `position` for the copies [m]
+    uint32_t seed = 1;             ///< of the scattering
+    std::string particles;         ///< sphere: one for each particle of this system; empty: not
+    float radius_scale = 1.0f;     ///< of these, over the particles' radii
+    bool use_color = false;        ///< their radiance is multiplied by the particles' colours,
+    bool use_temperature = false;  ///< by (T/1500 K)^4 blackbody_rgb(T)
     std::vector<TransformKey> transform;
 };
 

@@ -103,6 +103,31 @@ void describe(FieldVisitor& v, LightDescription& light)
         v,
         {.key = "seed", .doc = "Chooses the places of the copies", .used_by = "point spot sphere"},
         light.seed);
+    visit(v,
+          {.key = "particles",
+           .doc = "A lamp for each particle of the [[particles]] system of this name, in its place "
+                  "at the middle of the shutter, at most a million; instead of `position`, "
+                  "`radius` and `count`",
+           .used_by = "sphere"},
+          light.particles);
+    visit(v,
+          {.key = "radius_scale",
+           .doc = "With `particles`: radius of the lamps over that of the particles",
+           .range = Range{0.0, 1e6, true, false},
+           .used_by = "sphere"},
+          light.radius_scale);
+    visit(v,
+          {.key = "use_color",
+           .doc = "With `particles`: their colours multiply the radiance",
+           .used_by = "sphere"},
+          light.use_color);
+    visit(v,
+          {.key = "use_temperature",
+           .doc = "With `particles`: they glow by their temperature T, as black bodies do: the "
+                  "radiance is `color` times `strength` at 1500 K, and (T/1500 K)^4 times that in "
+                  "T's hue",
+           .used_by = "sphere"},
+          light.use_temperature);
     visit_transform(v, light.transform);
 }
 

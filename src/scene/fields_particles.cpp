@@ -41,7 +41,8 @@ void describe(FieldVisitor& v, SequenceParams& sequence)
 
 void describe(FieldVisitor& v, ParticlesDescription& particles)
 {
-    visit(v, {.key = "name", .doc = "What volumes call it", .required = true}, particles.name);
+    visit(v, {.key = "name", .doc = "What volumes and lights call it", .required = true},
+          particles.name);
     visit(v,
           {.key = "voxel_size",
            .doc = "Voxel edge of the grids that the particles are drawn into",

@@ -6,10 +6,18 @@ namespace {
 constexpr std::array reuse_names = {"auto", "off", "temporal", "spatial", "both"};
 constexpr std::array shift_names = {"random_numbers", "world", "fraction"};
 constexpr std::array mis_names = {"auto", "pairwise", "balance", "constant"};
+constexpr std::array surface_mis_names = {"auto", "pairwise", "balance", "constant",
+                                          "contribution"};
+constexpr std::array surface_visibility_names = {"exact", "none", "reused", "weighted"};
 constexpr std::array visibility_names = {"exact", "cached", "none"};
 constexpr std::array indirect_names = {"auto", "paths", "shared"};
-constexpr std::array preset_names = {"default", "textbook", "preview", "biased-no-visibility",
-                                     "biased-constant-mis"};
+constexpr std::array preset_names = {"default",
+                                     "textbook",
+                                     "preview",
+                                     "biased-no-visibility",
+                                     "biased-constant-mis",
+                                     "biased-reused-visibility",
+                                     "biased-weighted-visibility"};
 
 }  // namespace
 
@@ -21,7 +29,8 @@ void describe(FieldVisitor& v, RestirParams& restir)
          .doc = "Sets the keys below, those given besides win: textbook is the papers' "
                 "configuration, for comparison; preview leaves out exact corrections; "
                 "biased-no-visibility reuses without shadow rays, biased-constant-mis with "
-                "1/M weights"},
+                "1/M weights, biased-reused-visibility and biased-weighted-visibility with "
+                "surfaces' shadows as kept from before"},
         restir.preset, preset_names);
     if (v.assigns()) restir = make_restir_params(restir.preset);
     visit_choice(
@@ -98,11 +107,12 @@ void describe(FieldVisitor& v, RestirParams& restir)
                   .doc = "What a reused sample keeps: its random numbers, its place in the moving "
                          "medium (world), or the share of light lost before it (fraction)"},
                  restir.shift, shift_names);
-    visit_choice(v,
-                 {.key = "mis",
-                  .doc = "Weights between reservoirs; between neighbours balance is pairwise; "
-                         "constant is biased where smoke does not overlap: for study"},
-                 restir.mis, mis_names);
+    visit_choice(
+        v,
+        {.key = "mis",
+         .doc = "Weights between reservoirs; between neighbours in media balance is pairwise; "
+                "constant is biased where smoke does not overlap: for study"},
+        restir.mis, mis_names);
     visit_choice(
         v,
         {.key = "visibility",
@@ -153,6 +163,23 @@ void describe(FieldVisitor& v, SurfaceRestirParams& surface)
            .doc = "Pixels without history take this many times as many neighbours",
            .range = between(1, 8)},
           surface.boost);
+    visit_choice(
+        v,
+        {.key = "mis",
+         .doc = "Weights between surfaces' reservoirs; auto: those of `mis` above; balance takes "
+                "n (n - 1) shadow rays more for n neighbours; contribution (1/Z) is linear as "
+                "pairwise is, and noisier; constant (1/M) is biased at shadows and edges: for "
+                "study"},
+        surface.mis, surface_mis_names);
+    visit_choice(
+        v,
+        {.key = "visibility",
+         .doc = "Shadows in reuse between surfaces: exact, two rays per reservoir; none, one ray "
+                "for the chosen sample, noisier; reused, one ray where a sample is drawn, kept "
+                "for good: biased, darker beside shadows and lit inside; weighted, one ray per "
+                "neighbour, averaged with what history had: biased in time, colours leak and "
+                "moving shadows lag"},
+        surface.visibility, surface_visibility_names);
 }
 
 void describe(FieldVisitor& v, TemporalParams& temporal)

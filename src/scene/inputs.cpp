@@ -38,6 +38,9 @@ std::set<std::string> input_files(const SceneDescription& description, int frame
         if (volume.file) add_sequence(*volume.file);
         shown_particles.insert(volume.particles);
     }
+    for (const LightDescription& light : description.lights) {
+        shown_particles.insert(light.particles);
+    }
     for (const ParticlesDescription& particles : description.particles) {
         const auto* cache = std::get_if<CacheParams>(&particles.source);
         if (cache && shown_particles.count(particles.name) > 0) add_sequence(cache->sequence);

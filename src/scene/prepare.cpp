@@ -12,6 +12,8 @@
 #include "particles/sequence.h"
 #include "scene/gltf_camera.h"
 #include "scene/grid_cache.h"
+#include "scene/particle_lights.h"
+#include "scene/particle_system.h"
 #include "scene/prepare_camera.h"
 #include "scene/prepare_lights.h"
 #include "scene/prepare_surfaces.h"
@@ -114,15 +116,8 @@ std::optional<GridPlan> Preparation::plan_file(const VolumeDescription& volume) 
 /// Volumes that show the same system share one rasterisation with all channels that any needs.
 GridPlan Preparation::plan_particles(const VolumeDescription& volume) const
 {
-    const ParticlesDescription* system = nullptr;
-    for (const ParticlesDescription& candidate : description.particles) {
-        if (candidate.name == volume.particles) system = &candidate;
-    }
-    if (!system) {
-        throw Error(ExitCode::Input, fmt::format("no [[particles]] entry is named \"{}\"",
-                                                 printable(volume.particles)));
-    }
-    ParticlesPlan particles{system};
+    const ParticlesDescription& system = find_system(description, volume.particles);
+    ParticlesPlan particles{&system};
     particles.shutter_open_s =
         static_cast<float>(description.camera.shutter_open / description.fps);
     particles.shutter_close_s =
@@ -140,8 +135,8 @@ GridPlan Preparation::plan_particles(const VolumeDescription& volume) const
     if (needs.velocity) plan.grids.push_back({GridRole::Velocity, "velocity"});
     plan.version =
         fmt::format("particles {} {} {} {} {}{}{}",
-                    source_version(system->source, frame, description.fps, description.base_dir),
-                    system->voxel_size, particles.shutter_open_s, particles.shutter_close_s,
+                    source_version(system.source, frame, description.fps, description.base_dir),
+                    system.voxel_size, particles.shutter_open_s, particles.shutter_close_s,
                     has_temperature, has_color, needs.velocity);
     return plan;
 }
@@ -309,6 +304,8 @@ Scene prepare_frame(const SceneDescription& description, int frame, const Prepar
     if (needs.velocity) prepare.add_next_frame(scene, shown);
     prepare_surfaces(description, {frame, prepare.open(), prepare.close()}, cache.impl(), stats,
                      scene);
+    // Last, so that others keep their place where particles come and go.
+    add_particle_lights(description, 0.5 * (prepare.open() + prepare.close()), stats, scene.lights);
     stats.brick_bytes = memory_of(cache.impl());
     warn_if_dark(scene);
     return scene;

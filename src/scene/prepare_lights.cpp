@@ -52,6 +52,7 @@ std::vector<Light> make_lights(const std::vector<LightDescription>& descriptions
     for (const LightDescription& light : descriptions) {
         const bool is_black = light.strength * max_component(light.color) <= 0.0f;
         if (light.kind == LightKind::Environment || is_black) continue;
+        if (!light.particles.empty()) continue;
         const Trs trs = evaluate(light.transform, frame);
         const bool is_swarm = light.kind == LightKind::Point || light.kind == LightKind::Spot ||
                               light.kind == LightKind::Sphere;

@@ -7,8 +7,8 @@
 
 namespace mote {
 
-/// The lights other than the environment, placed at a (fractional) frame; swarms are scattered.
-/// Transforms move positions and directions; a sphere's radius takes the mean scale.
+/// The lights other than the environment and particles, placed at a (fractional) frame; swarms are
+/// scattered. Transforms move positions and directions; a sphere's radius takes the mean scale.
 [[nodiscard]] std::vector<Light> make_lights(const std::vector<LightDescription>& descriptions,
                                              double frame);
 

@@ -52,6 +52,20 @@ std::vector<ObjectPart> make_parts(const std::vector<ShownObject>& shown,
     return parts;
 }
 
+/// The number of a look among those that are there; equal ones are one.
+int number_of(SurfaceLook&& look, std::vector<Material>& materials,
+              std::vector<MaterialTextures>& textures)
+{
+    for (size_t i = 0; i < materials.size(); ++i) {
+        if (materials[i] == look.material && textures[i] == look.textures) {
+            return static_cast<int>(i);
+        }
+    }
+    materials.push_back(look.material);
+    textures.push_back(std::move(look.textures));
+    return static_cast<int>(materials.size()) - 1;
+}
+
 void count_meshes(const std::vector<ObjectPart>& parts, const SceneCache::Impl& cache,
                   PrepareStats& stats)
 {
@@ -89,9 +103,8 @@ void prepare_surfaces(const SceneDescription& description, const ShutterTimes& t
     std::vector<MaterialTextures> textures;
     std::vector<MeshInstance> instances;
     for (ObjectPart& part : parts) {
-        surfaces.objects.push_back({part.name, static_cast<int>(surfaces.materials.size())});
-        surfaces.materials.push_back(part.look.material);
-        textures.push_back(std::move(part.look.textures));
+        const int material = number_of(std::move(part.look), surfaces.materials, textures);
+        surfaces.objects.push_back({part.name, material});
         instances.push_back({part.mesh, std::move(part.world_from_object)});
         if (scene.next) scene.next->world_from_surface.push_back(std::move(part.next));
     }

@@ -8,6 +8,7 @@
 
 #include "core/error.h"
 #include "particles/rasterize.h"
+#include "scene/particle_system.h"
 #include "volumes/grid_io.h"
 #include "volumes/make_bricks.h"
 #include "volumes/procedural.h"
@@ -79,16 +80,6 @@ void build(const FilePlan& file, const GridPlan& plan, const std::vector<Planned
         cache.grids[plan.key(missing[i])] = to_bricks(grids[i], missing[i].role, place, stats);
         grids[i].reset();  // the unpacked tree and its bricks are not needed at once
     }
-}
-
-/// Error for a particle source without an attribute that the scene asks for.
-[[noreturn]] void missing_attribute(const ParticlesDescription& system, const char* attribute,
-                                    const char* user)
-{
-    throw Error(ExitCode::Input,
-                fmt::format("particles \"{}\": the source has no {}, which {} needs; name the "
-                            "file's attribute under \"attributes\" or do without",
-                            system.name, attribute, user));
 }
 
 void build(const ParticlesPlan& from, const GridPlan& plan, const std::vector<PlannedGrid>&,

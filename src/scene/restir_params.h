@@ -22,14 +22,16 @@ enum class ShiftKind {
 enum class ReuseMis {
     Auto,      ///< Balance for one input where nothing moved, Pairwise otherwise
     Pairwise,  ///< defensive pairwise: linear in the inputs, bounded in motion
-    Balance,   ///< generalised balance heuristic in time; between neighbours, where it would be
-               ///< quadratic in their number, as Pairwise
+    Balance,   ///< generalised balance heuristic; between neighbours its cost is quadratic in their
+               ///< number, so in media it is Pairwise there
     Constant,  ///< confidence alone; biased where supports differ: for study
+    Contribution,  ///< surfaces only: confidence alone, and the chosen sample's weight set right by
+                   ///< 1/Z; unbiased, linear, noisier than Pairwise
 };
 
 /// Where light scattered twice and more comes from.
 enum class IndirectLight {
-    Auto,    ///< Shared, unless volumes or objects move while the shutter is open
+    Auto,    ///< Shared where that pays (is_worth_sharing) and is possible (can_share_rays)
     Paths,   ///< paths of the pixel's own
     Shared,  ///< pairs of paths from the pixel's ray and from rays that pixels share
 };
@@ -42,13 +44,29 @@ enum class TargetVisibility {
     None,    ///< exact for candidates, ignored in reuse, exact for the chosen sample: biased
 };
 
+/// What reuse between surfaces knows about shadows. Rays per pixel and pass with n neighbours and
+/// one history, beside those of weights (see ReuseMis).
+enum class SurfaceVisibility {
+    Exact,     ///< in all targets: 1 + 2 (n + 1) rays
+    None,      ///< in none of them; the finally chosen sample is shaded exactly: 1 ray, noisier
+    Reused,    ///< tested once for each pixel's own sample, which is dropped if occluded and else
+               ///< keeps what it has for good, wherever it goes: 1 ray, biased (Bitterli et al.
+               ///< 2020, Wyman and Panteleev 2021)
+    Weighted,  ///< in no target; each sample has a visibility, its own by a ray, a neighbour's by a
+               ///< ray where it is taken to, history's as it was, averaged by resampling weights:
+               ///< 1 + n rays. Biased in time: colours leak, shadows lag in motion; between
+               ///< neighbours alone it is not.
+};
+
 /// Sets of parameters by name; keys that a scene gives besides win.
 enum class RestirPreset {
     Default,
     Textbook,  ///< the papers' configuration: cached targets, long history; for comparison
     Preview,   ///< closed forms without corrections: biased by the caches' coarseness
-    BiasedNoVisibility,  ///< reuse without shadow rays
-    BiasedConstantMis,   ///< 1/M weights on the world-space shift
+    BiasedNoVisibility,        ///< reuse without shadow rays
+    BiasedConstantMis,         ///< 1/M weights on the world-space shift
+    BiasedReusedVisibility,    ///< surfaces keep the visibility of where samples were drawn
+    BiasedWeightedVisibility,  ///< surfaces average visibilities over time
 };
 
 /// Reuse of the reservoir that a pixel had one pass ago.
@@ -74,6 +92,9 @@ struct SurfaceRestirParams {
     float radius_px = 10.0f;   ///< of the disk they are taken from [px]
     bool feedback = false;     ///< what neighbours brought becomes history, too
     int boost = 2;  ///< neighbours of pixels without history are this many times as many, [1, 8]
+    ReuseMis mis = ReuseMis::Auto;  ///< Auto: RestirParams::mis. Balance costs n (n - 1) rays more
+                                    ///< where targets know shadows
+    SurfaceVisibility visibility = SurfaceVisibility::Exact;
 };
 
 /// How the volumetric ReSTIR estimator samples. Unbiased unless a field says otherwise.
@@ -131,6 +152,14 @@ struct RestirParams {
             p.shift = ShiftKind::World;
             p.mis = ReuseMis::Constant;
             break;
+        case RestirPreset::BiasedReusedVisibility:
+            p.reuse = ReuseMode::Both;
+            p.surface.visibility = SurfaceVisibility::Reused;
+            break;
+        case RestirPreset::BiasedWeightedVisibility:
+            p.reuse = ReuseMode::Both;
+            p.surface.visibility = SurfaceVisibility::Weighted;
+            break;
     }
     return p;
 }
@@ -154,6 +183,29 @@ struct RestirParams {
     return p;
 }
 
+/// Weights between surfaces' reservoirs.
+[[nodiscard]] inline ReuseMis surface_mis(const RestirParams& p)
+{
+    return p.surface.mis == ReuseMis::Auto ? p.mis : p.surface.mis;
+}
+
+/// Whether surfaces that reuse samples have the right mean. README has the table.
+[[nodiscard]] inline bool is_surface_reuse_unbiased(const RestirParams& p)
+{
+    const ReuseMis mis = surface_mis(p);
+    switch (p.surface.visibility) {
+        case SurfaceVisibility::Exact:
+        case SurfaceVisibility::None:
+            return mis != ReuseMis::Constant;
+        case SurfaceVisibility::Reused:
+            return false;
+        case SurfaceVisibility::Weighted:
+            return p.reuse == ReuseMode::Spatial && mis != ReuseMis::Constant &&
+                   mis != ReuseMis::Contribution;
+    }
+    return false;
+}
+
 /// Whether images of these parameters have the right mean; the others are known to be biased.
 [[nodiscard]] inline bool is_unbiased(const RestirParams& p)
 {
@@ -161,7 +213,9 @@ struct RestirParams {
                         p.reuse == ReuseMode::Both;
     const bool reuse_is_right =
         p.visibility != TargetVisibility::None && p.mis != ReuseMis::Constant;
-    return p.corrections && (!reuses || reuse_is_right);
+    // `auto` may reuse surfaces' samples.
+    const bool surfaces_are_right = p.reuse == ReuseMode::Off || is_surface_reuse_unbiased(p);
+    return p.corrections && (!reuses || reuse_is_right) && surfaces_are_right;
 }
 
 }  // namespace mote

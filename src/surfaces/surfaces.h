@@ -30,14 +30,17 @@ struct Surfaces {
     }
     [[nodiscard]] const Material& material(int object) const
     {
-        return materials[static_cast<size_t>(objects[static_cast<size_t>(object)].material)];
+        return materials[static_cast<size_t>(material_index(object))];
+    }
+    [[nodiscard]] int material_index(int object) const
+    {
+        return objects[static_cast<size_t>(object)].material;
     }
     /// Null: the object's material is the same everywhere.
     [[nodiscard]] const MaterialTextures* textures_of(int object) const
     {
         if (textures.empty()) return nullptr;
-        const int material_index = objects[static_cast<size_t>(object)].material;
-        const MaterialTextures& found = textures[static_cast<size_t>(material_index)];
+        const MaterialTextures& found = textures[static_cast<size_t>(material_index(object))];
         return found.has_pictures() || found.is_cut() ? &found : nullptr;
     }
 };

@@ -19,6 +19,7 @@ enum class Mistake { None, NoJacobian, NoShadow, NoPhase, KeepsWeightAfterFailur
 struct SimplePair {
     const TraceContext& context;
     Mistake mistake = Mistake::None;
+    float farthest = 0.4f;  ///< [m]
 
     Spectrum operator()(const PairedEvent& here, const PairedEvent& there, Rng& rng) const
     {
@@ -47,7 +48,7 @@ struct SimplePair {
                               optical_depth(media, other_ray, {0.0f, length}));
         }
         // Pairs that are led too far count as failed: then own's path stands alone.
-        const bool fails = length > 0.4f || hit->t > 0.4f;
+        const bool fails = length > farthest || hit->t > farthest;
         if (fails) ratio = 0.0f;
         float own_weight = 2.0f / (1.0f + ratio);
         if (fails && mistake == Mistake::KeepsWeightAfterFailure) own_weight = 1.0f;
@@ -62,9 +63,10 @@ struct SimplePair {
     }
 };
 
-TestResult judge(Mistake mistake)
+TestResult judge(Mistake mistake, float density = 6.0f, float farthest = 0.4f,
+                 Vec3 second = Vec3(0.25f, -0.1f, 0.1f))
 {
-    Scene scene = test::sun_and_sky().scene;
+    Scene scene = test::sun_and_sky(density).scene;
     scene.environment.reset();
     PathTracerParams path;
     path.max_bounces = 2;
@@ -78,8 +80,8 @@ TestResult judge(Mistake mistake)
                            &scene.media.volumes[0].phase, Spectrum(0.8f)};
     };
     const PairedEvent here = event_at(Vec3(0.1f, 0.05f, 0.2f));
-    const PairedEvent there = event_at(Vec3(0.25f, -0.1f, 0.1f));
-    const test::Batches batches{32, 2500};
+    const PairedEvent there = event_at(second);
+    const test::Batches batches{32, 5000};
     const auto alone = [&](const PairedEvent& e) {
         return [&](Rng& rng) {
             return e.weight * trace_after_event(context, {e.x, e.wo, 0.0f, e.phase}, rng).indirect;
@@ -87,7 +89,7 @@ TestResult judge(Mistake mistake)
     };
     const MeanEstimate a = test::mean_of(batches, 1, alone(here));
     const MeanEstimate b = test::mean_of(batches, 2, alone(there));
-    const SimplePair pair{context, mistake};
+    const SimplePair pair{context, mistake, farthest};
     const MeanEstimate found =
         test::mean_of(batches, 3, [&](Rng& rng) { return pair(here, there, rng); });
     return welch_test(found, combine(a, 1.0, b, -1.0));
@@ -96,6 +98,7 @@ TestResult judge(Mistake mistake)
 TEST(PairControlsStat, TheRightWeightsPass)
 {
     EXPECT_GT(judge(Mistake::None).p, alarm);
+    EXPECT_GT(judge(Mistake::None, 12.0f, 1.0f, Vec3(0.1f, 0.5f, 0.4f)).p, alarm);
 }
 
 TEST(PairControlsStat, AMissingJacobianIsFoundOut)
@@ -105,7 +108,7 @@ TEST(PairControlsStat, AMissingJacobianIsFoundOut)
 
 TEST(PairControlsStat, TheOtherEventsShadowMustBeAsked)
 {
-    EXPECT_LT(judge(Mistake::NoShadow).p, alarm);
+    EXPECT_LT(judge(Mistake::NoShadow, 12.0f, 1.0f, Vec3(0.1f, 0.5f, 0.4f)).p, alarm);
 }
 
 TEST(PairControlsStat, ThePhaseFunctionIsTheOtherEvents)
@@ -115,7 +118,7 @@ TEST(PairControlsStat, ThePhaseFunctionIsTheOtherEvents)
 
 TEST(PairControlsStat, AFailedPairCountsOnceMore)
 {
-    EXPECT_LT(judge(Mistake::KeepsWeightAfterFailure).p, alarm);
+    EXPECT_LT(judge(Mistake::KeepsWeightAfterFailure, 6.0f, 0.25f).p, alarm);
 }
 
 }  // namespace

@@ -115,6 +115,38 @@ TEST_P(SurfaceLayers, NormalsPlacesAndDepths)
     EXPECT_GT(beside, 20);
 }
 
+/// A ball before the floor, of another material: whole numbers, those of what is nearest.
+TEST_P(SurfaceLayers, MaterialsByNumber)
+{
+    Scene scene = make_scene();
+    scene.lights.resize(1);
+    const auto floor =
+        test::quad_mesh(Vec3(-2.0f, -1.0f, 0.0f), Vec3(4.0f, 0.0f, 0.0f), Vec3(0.0f, 1.6f, 0.0f));
+    test::add_surfaces(scene, {{floor, test::diffuse(Spectrum(0.8f))},
+                               {test::sphere_mesh(0.6f, 12), test::diffuse(Spectrum(0.1f))}});
+    const LayeredImage image = render(scene, {"material_id", "P", "N"}, GetParam(), 64);
+    int seen[3] = {};
+    int shared = 0;
+    for (int y = 0; y < image.height; ++y) {
+        for (int x = 0; x < image.width; ++x) {
+            const auto at = [&](const char* name) { return channel(image, name).at(x, y); };
+            const float id = at("material_id.Y");
+            ASSERT_TRUE(id == 0.0f || id == 1.0f || id == 2.0f) << id;
+            ++seen[static_cast<int>(id)];
+            EXPECT_EQ(id == 0.0f, Vec3(at("N.X"), at("N.Y"), at("N.Z")) == Vec3(0.0f));
+            // The floor is the plane z = 0; a pixel that has any of the ball is the ball's.
+            if (id == 1.0f) {
+                EXPECT_NEAR(at("P.Z"), 0.0f, 1e-5f);
+            } else if (id == 2.0f) {
+                EXPECT_GT(at("P.Z"), 0.0f);
+            }
+            shared += id == 2.0f && at("P.Z") < 0.1f ? 1 : 0;
+        }
+    }
+    for (const int count : seen) EXPECT_GT(count, 10);
+    EXPECT_GT(shared, 0);
+}
+
 TEST_P(SurfaceLayers, MotionOfSurfaces)
 {
     // The floor moves by 0.3 m to the right until the next frame, the camera stands.

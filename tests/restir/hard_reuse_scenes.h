@@ -37,6 +37,30 @@ radius = 0.08
 strength = 20
 )";
 
+/// Sparks that fly, cool, die and are born again, as lamps.
+inline const char* const sparks = R"(
+[[particles]]
+name = "sparks"
+emitter = "plume"
+count = 60
+position = [0, -0.6, 0.3]
+size = 0.4
+speed = 1.5
+lifetime = 0.6
+start_time = -2
+radius = 0.1
+temperature = 2200
+cooling = 1.5
+color = [1, 0.7, 0.9]
+[[lights]]
+type = "sphere"
+particles = "sparks"
+radius_scale = 0.5
+use_color = true
+use_temperature = true
+strength = 0.5
+)";
+
 inline std::string moving_puff()
 {
     return evolving_puff(
@@ -69,6 +93,12 @@ inline std::vector<Scene> thousand_lamps_frames(int count)
 {
     using namespace scene_text;
     return frames_of(image() + moving_camera + moving_puff() + thousand_lamps, count);
+}
+
+inline std::vector<Scene> sparks_frames(int count)
+{
+    using namespace scene_text;
+    return frames_of(image() + moving_camera + moving_puff() + sparks, count);
 }
 
 inline std::vector<Scene> camera_inside_frames(int count)

@@ -55,7 +55,7 @@ void SmallRun::combine(const SmallFrame& now, const PixelDomain& own,
     stream.count(c.sum());
     const ShiftEnd here{now.frame, own};
     Spectrum color(0.0f);
-    float m_0 = own_weight_base(how_.mis, c);
+    float m_0 = c.own / c.sum();
     PixelReservoir chosen;
     float chosen_visibility = pixel.visibility;
     for (const Other& other : others) {

@@ -85,7 +85,6 @@ TEST(Reservoir, MergingIsStreaming)
     const Reservoir whole = all.finish();
 
     RisStream merged;
-    const Confidences c{1.0f, 1.0f};
     for (int half = 0; half < 2; ++half) {
         RisStream part;
         part.count(1.0f);
@@ -95,9 +94,10 @@ TEST(Reservoir, MergingIsStreaming)
         }
         const Reservoir r = part.finish();
         const float p = r.p_hat;
-        const float m = half == 0 ? own_weight_base(MisForm::Balance, c) +
-                                        own_weight_term(MisForm::Balance, c, 1.0f, p, p)
-                                  : other_weight(MisForm::Balance, c, 1.0f, p, p);
+        TargetSum both;
+        both.add(1.0f, p);
+        both.add(1.0f, p);
+        const float m = both.share(1.0f, p);
         merged.count(r.M);
         merged.add(r.y, p, static_cast<double>(m * p * r.W), 0.0f, 0.0f);
     }

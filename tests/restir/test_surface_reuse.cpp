@@ -1,75 +1,20 @@
-#include "restir/reuse_judge.h"
-#include "restir/room_scenes.h"
+#include "restir/surface_forms.h"
 
 namespace mote {
 namespace {
 
-using test::RoomState;
 using test::SceneCase;
-
-/// Rooms of `count` frames; `state` tells each one's.
-std::vector<Scene> rooms(int count, RoomState (*state)(float step))
-{
-    std::vector<Scene> frames;
-    for (int i = 0; i < count; ++i) {
-        frames.push_back(test::room(state(static_cast<float>(i))));
-        frames.back().frame = 1 + i;
-    }
-    return frames;
-}
-
-/// The same scene, meshes included, in frames of their own: nothing has changed.
-std::vector<Scene> still_frames_of(const Scene& scene, int count)
-{
-    std::vector<Scene> frames(static_cast<size_t>(count), scene);
-    for (int i = 0; i < count; ++i) frames[static_cast<size_t>(i)].frame = 1 + i;
-    return frames;
-}
-
-std::vector<Scene> still_rooms(int count)
-{
-    return still_frames_of(test::room(), count);
-}
-
-std::vector<Scene> moving_cameras(int count)
-{
-    return rooms(count, [](float step) {
-        RoomState state;
-        state.camera = {0.5f - 0.25f * step, 0.4f + 0.1f * step, 3.2f - 0.1f * step};
-        return state;
-    });
-}
-
-std::vector<Scene> moving_objects(int count)
-{
-    return rooms(count, [](float step) {
-        RoomState state;
-        state.block = {-0.8f + 0.3f * step, -0.7f + 0.1f * step, 0.4f};
-        state.block_angle = 0.3 * static_cast<double>(step);
-        return state;
-    });
-}
-
-/// The sphere flies, the panel is switched off and on again.
-std::vector<Scene> changing_lights(int count)
-{
-    return rooms(count, [](float step) {
-        RoomState state;
-        state.lamp = {1.0f - 0.4f * step, 0.3f, 0.8f};
-        state.lamp_radiance = 5.0f + step;
-        state.panel = static_cast<int>(step) % 2 == 0 ? 0.5f : 20.0f;
-        return state;
-    });
-}
 
 std::vector<Scene> courtyards(int count)
 {
-    return still_frames_of(test::courtyard(true), count);
+    return test::still_frames_of(test::courtyard(true), count);
 }
 
 const SceneCase scenes[] = {
-    {"still room", still_rooms},           {"camera in a room", moving_cameras},
-    {"objects in a room", moving_objects}, {"lights in a room", changing_lights},
+    {"still room", test::still_rooms},
+    {"camera in a room", test::moving_cameras},
+    {"objects in a room", test::moving_objects},
+    {"lights in a room", test::changing_lights},
     {"courtyard", courtyards, false},
 };
 

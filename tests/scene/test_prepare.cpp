@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
+#include "particles/source.h"
 #include "scene/prepare.h"
 #include "support/scene_files.h"
+#include "volumes/blackbody.h"
 
 namespace mote {
 namespace {
@@ -200,6 +202,91 @@ transform = { rotate = [0, 90, 0] }
     EXPECT_EQ(scene.environment->radiance, Spectrum(2.0f));
     const Vec3 seen = scene.environment->map_from_world * Vec3(1.0f, 0.0f, 0.0f);
     EXPECT_NEAR(glm::length(seen - Vec3(0.0f, 0.0f, 1.0f)), 0.0f, 1e-6f);
+}
+
+/// Three particles of a file; the second is cold.
+struct ParticleLamps {
+    TemporaryFolder folder;
+    std::string csv = folder.write("points.csv",
+                                   "x,y,z,pscale,temperature,Cd_r,Cd_g,Cd_b\n"
+                                   "0,0,0,0.5,1500,1,0.5,0\n"
+                                   "1,0,0,0.5,0,1,1,1\n"
+                                   "0,2,0,0.25,3000,0.5,1,1\n");
+    /// The scene's text, with keys of the light.
+    [[nodiscard]] std::string text(const std::string& light) const
+    {
+        return "[[particles]]\nname = \"sparks\"\nfile = \"" + csv +
+               "\"\nattributes = { color = \"Cd\" }\n[[lights]]\ntype = \"sphere\"\n"
+               "particles = \"sparks\"\nstrength = 4\n" +
+               light;
+    }
+};
+
+TEST(Prepare, ParticlesAsLamps)
+{
+    const ParticleLamps lamps;
+    const Scene plain = prepare(load_text(lamps.text("radius_scale = 0.2")), 1);
+    ASSERT_EQ(plain.lights.size(), 3u);
+    const auto& first = std::get<SphereLight>(plain.lights[0]);
+    EXPECT_EQ(first.radiance, Spectrum(4.0f));
+    EXPECT_NEAR(first.radius, 0.1f, 1e-6f);
+    EXPECT_EQ(std::get<SphereLight>(plain.lights[1]).position, Vec3(1.0f, 0.0f, 0.0f));
+
+    const Scene all = prepare(load_text(lamps.text("use_color = true\nuse_temperature = true\n"
+                                                   "color = [1, 1, 0.5]\n"
+                                                   "transform = { translate = [0, 0, 3], "
+                                                   "scale = 2 }")),
+                              1);
+    ASSERT_EQ(all.lights.size(), 2u);  // the cold one gives no light
+    const auto& warm = std::get<SphereLight>(all.lights[0]);
+    const auto& hot = std::get<SphereLight>(all.lights[1]);
+    EXPECT_EQ(hot.position, Vec3(0.0f, 4.0f, 3.0f));
+    EXPECT_NEAR(hot.radius, 0.5f, 1e-6f);
+    EXPECT_NEAR(warm.radius, 1.0f, 1e-6f);
+    const Spectrum at_1500 = Spectrum(4.0f, 2.0f, 0.0f) * blackbody_rgb(1500.0f);
+    const Spectrum at_3000 = 16.0f * Spectrum(2.0f, 4.0f, 2.0f) * blackbody_rgb(3000.0f);
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(warm.radiance[c], at_1500[c], 1e-4f) << c;
+        EXPECT_NEAR(hot.radiance[c], at_3000[c], 1e-3f) << c;
+    }
+}
+
+/// Lamps follow the particles from frame to frame and come after all others.
+TEST(Prepare, ParticleLampsMoveWithTheirParticles)
+{
+    const std::string text =
+        "[camera]\nshutter_close = 1\n[[particles]]\nname = \"p\"\nemitter = \"burst\"\ncount = "
+        "50\nstart_time = -0.2\n[[lights]]\ntype = \"sphere\"\nparticles = \"p\"\n"
+        "[[lights]]\ntype = \"point\"\n";
+    const SceneDescription description = load_text(text);
+    SceneCache cache;
+    PrepareStats stats;
+    const Scene scene = prepare(description, 5, cache, stats);
+    const ParticleSet at_middle = particles_at(description.particles[0].source, 5.5, 24.0, "");
+    ASSERT_EQ(scene.lights.size(), at_middle.size() + 1);
+    EXPECT_EQ(stats.particles, static_cast<int64_t>(at_middle.size()));
+    EXPECT_TRUE(std::holds_alternative<PointLight>(scene.lights[0]));
+    for (size_t i = 0; i < at_middle.size(); ++i) {
+        EXPECT_EQ(std::get<SphereLight>(scene.lights[i + 1]).position, at_middle.position[i]);
+    }
+}
+
+TEST(Prepare, ParticleLampsSayWhatIsMissing)
+{
+    const TemporaryFolder folder;
+    const std::string csv = folder.write("points.csv", "x,y,z\n0,0,0\n");
+    const std::string lamps = "[[particles]]\nname = \"p\"\nfile = \"" + csv +
+                              "\"\n[[lights]]\ntype = \"sphere\"\nparticles = \"p\"\n";
+    EXPECT_EQ(error_of(lamps), "no error");
+    EXPECT_NE(error_of(lamps + "use_color = true")
+                  .find("particles \"p\": the source has no color, which \"use_color\" needs"),
+              std::string::npos);
+    EXPECT_NE(error_of(lamps + "use_temperature = true").find("has no temperature, which"),
+              std::string::npos);
+    EXPECT_NE(error_of("[[particles]]\nname = \"p\"\nemitter = \"snow\"\ncount = 1_100_000\n"
+                       "[[lights]]\ntype = \"sphere\"\nparticles = \"p\"\n")
+                  .find("particles \"p\": 1100000 of them are more than the 1000000 lamps"),
+              std::string::npos);
 }
 
 TEST(Prepare, SaysWhatIsMissing)

@@ -67,6 +67,24 @@ struct Folder {
     }
 };
 
+/// What looks the same has one number, in the order in which objects bring it.
+TEST(PrepareSurfaces, EqualMaterialsAreOne)
+{
+    const Folder f(
+        "[[objects]]\nfile = \"box.obj\"\nmaterial = { color = 0.5 }\n"
+        "[[objects]]\nfile = \"box.obj\"\nmaterial = { emission = 1 }\n"
+        "[[objects]]\nfile = \"box.obj\"\nmaterial = { color = 0.5 }\n");
+    SceneCache cache;
+    PrepareStats stats;
+    const Scene scene = prepare(f.description, 1, cache, stats);
+    ASSERT_EQ(scene.surfaces->objects.size(), 3u);
+    EXPECT_EQ(scene.surfaces->materials.size(), 2u);
+    EXPECT_EQ(scene.surfaces->material_index(0), 0);
+    EXPECT_EQ(scene.surfaces->material_index(1), 1);
+    EXPECT_EQ(scene.surfaces->material_index(2), 0);
+    EXPECT_EQ(scene.first_light_of_object, (std::vector<int>{-1, 0, -1}));
+}
+
 TEST(PrepareSurfaces, ObjectsMaterialsAndLights)
 {
     const Folder f(scene_text);

@@ -29,6 +29,8 @@ void expect_same(const RestirParams& a, const RestirParams& b)
     EXPECT_EQ(a.spatial.neighbours, b.spatial.neighbours);
     EXPECT_EQ(a.spatial.radius_px, b.spatial.radius_px);
     EXPECT_EQ(a.spatial.feedback, b.spatial.feedback);
+    EXPECT_EQ(a.surface.mis, b.surface.mis);
+    EXPECT_EQ(a.surface.visibility, b.surface.visibility);
 }
 
 TEST(RestirPresets, DefaultIsWhatASceneWithoutOneHas)
@@ -79,6 +81,25 @@ TEST(RestirPresets, BiasedOnesDifferInOneThing)
     expected.mis = ReuseMis::Constant;
     EXPECT_EQ(preset("biased-constant-mis").preset, RestirPreset::BiasedConstantMis);
     expect_same(preset("biased-constant-mis"), expected);
+
+    RestirParams surfaces;
+    surfaces.reuse = ReuseMode::Both;
+    surfaces.surface.visibility = SurfaceVisibility::Reused;
+    expect_same(preset("biased-reused-visibility"), surfaces);
+    surfaces.surface.visibility = SurfaceVisibility::Weighted;
+    expect_same(preset("biased-weighted-visibility"), surfaces);
+    surfaces.surface.mis = ReuseMis::Contribution;
+    expect_same(preset("biased-weighted-visibility", "surface = { mis = \"contribution\" }\n"),
+                surfaces);
+}
+
+TEST(RestirPresets, BiasedOnesAreKnownToBe)
+{
+    for (const char* name : {"biased-no-visibility", "biased-constant-mis",
+                             "biased-reused-visibility", "biased-weighted-visibility", "preview"}) {
+        EXPECT_FALSE(is_unbiased(preset(name))) << name;
+    }
+    for (const char* name : {"default", "textbook"}) EXPECT_TRUE(is_unbiased(preset(name))) << name;
 }
 
 TEST(RestirPresets, KeysGivenBesidesWin)

@@ -58,7 +58,7 @@ TEST(SceneErrors, NamePlaceKeyAndRemedy)
          "scene.toml:2:9: error: unknown \"z\" in \"aovs\" in [output] (did you mean \"Z\"?); "
          "known: Z, albedo, motion, variance, samples, volume_direct, volume_indirect, "
          "volume_emission, background, transmittance, optical_depth, volume_Z, restir, cost, work, "
-         "direct, indirect, emission, N, P"},
+         "direct, indirect, emission, N, P, material_id"},
         {"[output]\naovs = [\"Z\", \"Z\"]",
          "scene.toml:2:14: error: \"Z\" is twice in \"aovs\" in [output]"},
         {"[output]\npath = \"a\\u0000b\"",
@@ -141,6 +141,18 @@ TEST(SceneErrors, NamePlaceKeyAndRemedy)
          "scene.toml:4:8: error: a scene has one environment light"},
         {"[[lights]]\ntype = \"distant\"\ndirection = [0, 0, 0]",
          "scene.toml:3:13: error: \"direction\" in [lights] must not be 0"},
+        {"[[lights]]\ntype = \"sphere\"\nparticles = \"spark\"\nradius = 1\n[[particles]]\nname = "
+         "\"sparks\"\nemitter = \"burst\"",
+         "scene.toml:3:13: error: no [[particles]] entry is named \"spark\" (did you mean "
+         "\"sparks\"?)\n"
+         "scene.toml:4:10: error: \"radius\" of a light with \"particles\" comes from the "
+         "particles; "
+         "leave it out"},
+        {"[[lights]]\ntype = \"sphere\"\nuse_color = true",
+         "scene.toml:3:13: error: \"use_color\" of a light needs \"particles\""},
+        {"[[lights]]\ntype = \"point\"\nparticles = \"sparks\"",
+         "scene.toml:3:1: error: \"particles\" in [lights] has no meaning with \"point\"; it is "
+         "for: sphere"},
         {"[[lights]]\ntype = \"quad\"\nedge_u = [0, 0, 2]",
          "scene.toml:3:10: error: \"edge_u\" and \"edge_v\" span no area"},
         {"volumes = 3",

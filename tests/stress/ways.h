@@ -12,8 +12,8 @@ namespace mote::test {
 struct Way {
     std::string name;
     RenderDescription render;  ///< film size: that of the scene's camera, see play()
-    /// Corrections of the control variate are signed: a pixel's estimate may fall below 0 though
-    /// its expectation does not.
+    /// Corrections of the control variate, of guessed shadows and of shared rays are signed: a
+    /// pixel's estimate may fall below 0 though its expectation does not.
     bool is_signed = false;
 };
 
@@ -34,7 +34,7 @@ struct Way {
     way.name = name;
     way.render.estimator = EstimatorKind::Restir;
     way.render.restir = restir;
-    way.is_signed = restir.control_variate;
+    way.is_signed = restir.control_variate || max_bounces > 1;
     return way;
 }
 
