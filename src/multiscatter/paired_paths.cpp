@@ -90,7 +90,7 @@ class PairTracer {
                bool& truncated)
         : context_(context),
           exact_params_(with_exact_shadows(context.params)),
-          exact_{context.scene, context.lights, exact_params_, context.shadows},
+          exact_{context.scene, context.lights, exact_params_, context.shadows, context.guide},
           scene_(context.scene),
           params_(params),
           time_(time),
@@ -270,7 +270,7 @@ class PairTracer {
     {
         PathTracerParams last = exact_params_;
         last.max_bounces = event_count;
-        const TraceContext context{scene_, context_.lights, last, context_.shadows};
+        const TraceContext context{scene_, context_.lights, last, context_.shadows, context_.guide};
         return for_both(pair, [&](const PairedEvent& at, Rng& rng) {
             bool ignored = false;
             const LightRay light_ray{Ray{at.x, segment.wi, time_}, segment.pdf_dir, false};

@@ -172,8 +172,10 @@ Spectrum light_of_pixel(const TraceContext& context, const RayPyramidParams& par
            difference_of(context, domain, nearest.domain, params.pairs, rng, truncated);
 }
 
-bool is_worth_sharing(const Scene& scene, const RayPyramid& pyramid)
+bool is_worth_sharing(const FrameDomain& frame, const RayPyramid& pyramid)
 {
+    const Scene& scene = *frame.scene;
+    if (!frame.caches->local_lights.empty()) return false;
     // Measured on plumes of 240 to 1280 pixels: at 0.1 mean free paths (g = 0.3) pairs and paths of
     // one's own are equally good, at 0.04 pairs are three times better.
     constexpr float most_apart = 0.08f / 0.7f;

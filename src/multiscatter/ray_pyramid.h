@@ -59,8 +59,9 @@ void light_ray_pyramid(const TraceContext& context, const RayPyramidParams& para
                                       const PixelDomain& domain, Rng& rng, bool& truncated);
 
 /// Whether sharing pays on this tile: where neighbouring pixels are much closer together than the
-/// smoke's mean free path, narrow lobes counting as shorter ones. Known before any path is traced.
-[[nodiscard]] bool is_worth_sharing(const Scene& scene, const RayPyramid& pyramid);
+/// smoke's mean free path, narrow lobes counting as shorter ones, and no lamps are near, whose
+/// light changes from place to place. Known before any path is traced.
+[[nodiscard]] bool is_worth_sharing(const FrameDomain& frame, const RayPyramid& pyramid);
 
 /// Whether pixels of a scene may share rays: nothing but the camera moves while the shutter is open
 /// (else the light of two rays would belong to different times).

@@ -59,7 +59,7 @@ Spectrum estimate_emission_light(const TraceContext& context, const ScatterEvent
 
 Spectrum estimate_direct_light(const TraceContext& context, const ScatterEvent& event, Rng& rng)
 {
-    const std::optional<LightChoice> choice = context.lights.choose(event.x, rng);
+    const std::optional<LightChoice> choice = context.lights.choose(event.x, rng, context.guide);
     if (!choice) return Spectrum(0.0f);
     if (choice->source == LightSource::EmissiveVolume) {
         return estimate_emission_light(context, event, *choice, rng);
@@ -102,7 +102,8 @@ Spectrum seen_light(const TraceContext& context, const LightRay& light_ray,
             float weight = 1.0f;
             if (!light_ray.is_camera) {
                 const float pdf_dir = light_pdf(light, ray.o, ray.d);
-                const float pmf = context.lights.pmf(LightSource::Lamp, index, ray.o);
+                const float pmf =
+                    context.lights.pmf(LightSource::Lamp, index, ray.o, context.guide);
                 const float ratio =
                     light_ray.first ? equiangular_ratio(context, *light_ray.first, index) : 0.0f;
                 weight =
@@ -133,7 +134,7 @@ Spectrum seen_surface_light(const TraceContext& context, const LightRay& light_r
     const int index = context.scene.first_light_of_object[object] + vertex.triangle;
     const Light& light = context.scene.lights[static_cast<size_t>(index)];
     const Ray& ray = light_ray.ray;
-    const float pmf = context.lights.pmf(LightSource::Lamp, index, ray.o);
+    const float pmf = context.lights.pmf(LightSource::Lamp, index, ray.o, context.guide);
     const float pdf_light = pmf > 0.0f ? pmf * light_pdf(light, ray.o, ray.d) : 0.0f;
     return seen_weight(context.params, light_ray.pdf_dir, pdf_light) * Le;
 }

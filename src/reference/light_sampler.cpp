@@ -129,7 +129,7 @@ double LightSampler::tree_importance(Vec3 x) const
     return tree_.importance(x) / (4.0 * std::numbers::pi);
 }
 
-std::optional<LightChoice> LightSampler::choose(Vec3 x, Rng& rng) const
+std::optional<LightChoice> LightSampler::choose(Vec3 x, Rng& rng, const LightGuide* guide) const
 {
     if (emitters_.empty()) return std::nullopt;
     const auto choice = [this](size_t i, double pmf) {
@@ -145,6 +145,13 @@ std::optional<LightChoice> LightSampler::choose(Vec3 x, Rng& rng) const
     const double total = in_list + in_tree;
     double u = listed_ == 0 ? total : uniform_double(rng) * total;
     if (!tree_.is_empty() && u >= in_list) {
+        if (guide) {
+            const LightGuide::Choice sample = guide->choose(x, uniform_double(rng));
+            if (sample.lamp < 0) return std::nullopt;
+            return LightChoice{
+                LightSource::Lamp, sample.lamp,
+                static_cast<float>(static_cast<double>(sample.pmf) * (in_tree / total))};
+        }
         const LightTree::Choice sample = tree_.sample(x, rng);
         return choice(static_cast<size_t>(sample.id),
                       static_cast<double>(sample.pmf) * (in_tree / total));
@@ -158,7 +165,7 @@ std::optional<LightChoice> LightSampler::choose(Vec3 x, Rng& rng) const
     return choice(i, weight / total);
 }
 
-float LightSampler::pmf(LightSource source, int index, Vec3 x) const
+float LightSampler::pmf(LightSource source, int index, Vec3 x, const LightGuide* guide) const
 {
     const int found = find(source, index);
     if (found < 0) return 0.0f;
@@ -168,7 +175,8 @@ float LightSampler::pmf(LightSource source, int index, Vec3 x) const
     const double in_tree = tree_importance(x);
     const double total = listed_importance(x) + in_tree;
     if (i < listed_) return static_cast<float>(importance(emitters_[i], x) / total);
-    return static_cast<float>(static_cast<double>(tree_.pmf(found, x)) * (in_tree / total));
+    const float own = guide ? guide->pmf(index, x) : tree_.pmf(found, x);
+    return static_cast<float>(static_cast<double>(own) * (in_tree / total));
 }
 
 int LightSampler::find(LightSource source, int index) const

@@ -5,6 +5,7 @@
 
 #include "core/distribution.h"
 #include "core/rng.h"
+#include "reference/light_guide.h"
 #include "scene/lamp_surfaces.h"
 #include "scene/path_tracer_params.h"
 #include "scene/scene.h"
@@ -37,10 +38,13 @@ class LightSampler {
     LightSampler(const Scene& scene, const PathTracerParams& params);
 
     /// Chooses a light for point x [world]; empty if there is none to choose.
-    [[nodiscard]] std::optional<LightChoice> choose(Vec3 x, Rng& rng) const;
+    /// With a guide (may be null) lamps come from there where a tree would choose them.
+    [[nodiscard]] std::optional<LightChoice> choose(Vec3 x, Rng& rng,
+                                                    const LightGuide* guide = nullptr) const;
 
     /// Probability with which `choose` returns this light at x; 0 if it never does.
-    [[nodiscard]] float pmf(LightSource source, int index, Vec3 x) const;
+    [[nodiscard]] float pmf(LightSource source, int index, Vec3 x,
+                            const LightGuide* guide = nullptr) const;
 
     /// Calls f(index) for the lamps that a ray may meet.
     template <class F>

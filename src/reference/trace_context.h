@@ -13,6 +13,7 @@ struct TraceContext {
     const LightSampler& lights;
     const PathTracerParams& params;
     const ShadowGuess* shadows = nullptr;  ///< null: every shadow is asked for
+    const LightGuide* guide = nullptr;     ///< null: lights are chosen by the sampler alone
 };
 
 }  // namespace mote

@@ -1,6 +1,6 @@
 #include "render/camera_pass.h"
 
-#include "multiscatter/cached_shadows.h"
+#include "multiscatter/cached_lights.h"
 #include "multiscatter/scatter_along.h"
 #include "reference/path_tracer.h"
 #include "render/motion.h"
@@ -103,6 +103,12 @@ Spectrum medium_event(const Scene& scene, const PixelDomain& domain, float tau, 
     return albedo;
 }
 
+TraceContext context_with(const PassInputs& inputs, const CachedGuesses& guesses)
+{
+    return {*inputs.domain.scene, inputs.lights, inputs.render.path, &guesses.shadows,
+            guesses.guide()};
+}
+
 /// Light scattered twice and more, by the path tracer from exact first events on: stratified free
 /// flights, each worth the share of light that collides; where a surface ends the ray, that is all.
 void add_indirect(const PassInputs& inputs, const PixelDomain& domain, const SurfaceVertex* surface,
@@ -116,8 +122,8 @@ void add_indirect(const PassInputs& inputs, const PixelDomain& domain, const Sur
     // As many as the light that collides is worth: on thin smoke fewer.
     const float step = 1.0f / (lost * paths);
     const float weight = 1.0f / paths;
-    const CachedShadows shadows(*inputs.domain.caches);
-    const TraceContext context{scene, inputs.lights, inputs.render.path, &shadows};
+    const CachedGuesses guesses(*inputs.domain.caches);
+    const TraceContext context = context_with(inputs, guesses);
     for (float u = rng.uniform() * step; u < 1.0f; u += step) {
         const float tau = -std::log1p(-std::min(u, one_minus_epsilon) * lost);
         const float choice = rng.uniform();
@@ -223,7 +229,7 @@ std::unique_ptr<RayPyramid> make_tile_pyramid(const PassInputs& inputs, const Ti
     if (!shares || !media_in_view(scene, tile)) return nullptr;
     auto pyramid = std::make_unique<RayPyramid>();
     make_ray_pyramid(inputs.domain, tile, *pyramid, counts.bins);
-    if (params.indirect == IndirectLight::Auto && !is_worth_sharing(scene, *pyramid)) {
+    if (params.indirect == IndirectLight::Auto && !is_worth_sharing(inputs.domain, *pyramid)) {
         return nullptr;
     }
     return pyramid;
@@ -234,9 +240,9 @@ void light_tile_pyramid(const PassInputs& inputs, uint32_t pass, RayPyramid* pyr
     if (!pyramid) return;
     Rng rng = pass_rng(inputs, {pyramid->tile.x0, pyramid->tile.y0, pass}, Stream::Pyramid);
     bool truncated = false;
-    const CachedShadows shadows(*inputs.domain.caches);
-    light_ray_pyramid({*inputs.domain.scene, inputs.lights, inputs.render.path, &shadows},
-                      pyramid_params(inputs), rng, *pyramid, truncated);
+    const CachedGuesses guesses(*inputs.domain.caches);
+    light_ray_pyramid(context_with(inputs, guesses), pyramid_params(inputs), rng, *pyramid,
+                      truncated);
 }
 
 void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray,
@@ -287,10 +293,9 @@ void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray,
         if (inputs.nodes) {
             sample.indirect = scatter_along(*inputs.nodes, scene.media, ray, media.bins);
         } else if (pyramid) {
-            const CachedShadows shadows(*frame.caches);
-            sample.indirect = light_of_pixel({scene, inputs.lights, inputs.render.path, &shadows},
-                                             pyramid_params(inputs), *pyramid, key.x, key.y, media,
-                                             rng, truncated);
+            const CachedGuesses guesses(*frame.caches);
+            sample.indirect = light_of_pixel(context_with(inputs, guesses), pyramid_params(inputs),
+                                             *pyramid, key.x, key.y, media, rng, truncated);
         }
         add_indirect(inputs, media, surface, pyramid || inputs.nodes, rng, sample, truncated);
         counts.truncated += truncated ? 0 : -1;

@@ -4,7 +4,7 @@
 #include <mutex>
 
 #include "core/parallel.h"
-#include "multiscatter/cached_shadows.h"
+#include "multiscatter/cached_lights.h"
 #include "render/restir_reuse.h"
 #include "render/surface_pass.h"
 #include "restir/cache_stats.h"
@@ -117,9 +117,9 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
     std::optional<ScatterNodes> nodes;
     const bool is_preview = !render.restir.corrections;
     if (is_preview && can_have_scatter_nodes(scene, render.path)) {
-        const CachedShadows shadows(*history.caches);
+        const CachedGuesses guesses(*history.caches);
         nodes = make_scatter_nodes(
-            {scene, lights, render.path, &shadows},
+            {scene, lights, render.path, &guesses.shadows, guesses.guide()},
             {render.restir.node_paths, render.restir.node_spacing, render.samples, render.seed});
         stats.cache_cpu_seconds += nodes->cpu_seconds;
     }

@@ -21,16 +21,18 @@ TestScene with_bounces(TestScene scene, int max_bounces, const std::string& name
     return scene;
 }
 
-/// 20 x 18 pixels: four tiles, three of them cut.
+/// 20 x 18 pixels: four tiles, three of them cut. Close up, so that pixels are worth sharing and
+/// smoke fills the tiles: means of rare events are not normal.
 void use_large_camera(Scene& scene)
 {
     scene.camera.width = 20;
     scene.camera.height = 18;
+    scene.camera.tan_half_fov_y *= 0.25f;
 }
 
 TestScene dense_cloud(int max_bounces)
 {
-    TestScene out{"dense cloud", test::lit_clumps(25.0f), max_bounces};
+    TestScene out{"dense cloud", test::lit_clumps(10.0f), max_bounces};
     Volume& volume = out.scene.media.volumes[0];
     volume.albedo = Spectrum(0.999f);
     volume.phase = {0.85f};
@@ -157,7 +159,7 @@ TEST(SharedRaysStat, WhiteFurnaceStaysWhite)
         // False alarms: 1e-5 each.
         EXPECT_TRUE(confidence_interval(mean, 1.0 - 1e-5).contains(1.0))
             << mean.mean << " +- " << mean.standard_error();
-        EXPECT_LT(mean.standard_error(), 0.02);
+        EXPECT_LT(mean.standard_error(), 0.04);
     }
 }
 
@@ -200,13 +202,17 @@ TEST(SharedRays, AreUsedWherePixelsAreClose)
         const int x = camera.width / 2;
         const int y = camera.height / 2;
         make_ray_pyramid(frame, {x, y, x + 16, y + 16}, pyramid, counts);
-        return is_worth_sharing(scene.scene, pyramid);
+        return is_worth_sharing(frame, pyramid);
     };
     camera.width = 1920;
     camera.height = 1080;
     EXPECT_TRUE(worth());
     camera.width = 32;
     camera.height = 32;
+    EXPECT_FALSE(worth());
+    camera.width = 1920;
+    camera.height = 1080;
+    scene.scene.lights.emplace_back(SphereLight{Vec3(0.5f), 0.1f, Spectrum(1.0f)});
     EXPECT_FALSE(worth());
 }
 
