@@ -109,7 +109,7 @@ struct RestirParams {
     int environment_rays = 0;     ///< and into the environment; 0: see environment_rays_of
     IndirectLight indirect = IndirectLight::Auto;
     int indirect_paths = 8;     ///< paths of two and more events per pass, by the path tracer
-    int indirect_pairs = 2;     ///< pairs per pass, where rays are shared
+    int indirect_pairs = 4;     ///< pairs per pass, where rays are shared
     float node_paths = 1.0f;    ///< previews: paths from nodes per pass and pixel of smoke
     float node_spacing = 0.0f;  ///< previews: [m]; 0: by density and pixel size
     bool corrections = true;    ///< false: the closed form alone, a fast biased preview

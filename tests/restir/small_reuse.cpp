@@ -140,7 +140,8 @@ void SmallRun::reuse_history(const SmallFrame& before, const std::vector<SmallPi
         if (from->x >= now.width || from->y >= now.height) from.reset();
     }
     if (!from) return;
-    const auto there = static_cast<size_t>(from->y * now.width + from->x);
+    const size_t there = static_cast<size_t>(from->y) * static_cast<size_t>(now.width) +
+                         static_cast<size_t>(from->x);
     const PixelDomain& earlier = before.pixels[there];
     const Reservoir& theirs = history[there].reservoir.r;
     const RayMap map = make_ray_map(earlier.ray, own.ray, from->motion);
