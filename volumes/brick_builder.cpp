@@ -56,7 +56,7 @@ BrickRange range_of(const float* v)
     for (int x = 0; x < stride; ++x) {
         for (int y = 0; y < stride; ++y) {
             const double edge = (x % 8 == 0 ? 0.5 : 1.0) * (y % 8 == 0 ? 0.5 : 1.0);
-            const float* row = v + (x * stride + y) * stride;
+            const float* row = v + ptrdiff_t{stride} * (x * stride + y);
             for (int z = 0; z < stride; ++z) {
                 min[z] = std::min(min[z], row[z]);
                 max[z] = std::max(max[z], row[z]);

@@ -321,7 +321,7 @@ openvdb::GridPtrVec read_grids(const std::string& path, const std::vector<std::s
 openvdb::FloatGrid::Ptr read_float_grid(const std::string& path, const std::string& name,
                                         const GridBudget& budget)
 {
-    const auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(read_grids(path, {name}, budget)[0]);
+    auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(read_grids(path, {name}, budget)[0]);
     if (grid) return grid;
     throw Error(ExitCode::Input,
                 describe(path, name) + " is a vector grid; a scalar is needed here");
@@ -330,7 +330,7 @@ openvdb::FloatGrid::Ptr read_float_grid(const std::string& path, const std::stri
 openvdb::Vec3SGrid::Ptr read_vec3_grid(const std::string& path, const std::string& name,
                                        const GridBudget& budget)
 {
-    const auto grid = openvdb::gridPtrCast<openvdb::Vec3SGrid>(read_grids(path, {name}, budget)[0]);
+    auto grid = openvdb::gridPtrCast<openvdb::Vec3SGrid>(read_grids(path, {name}, budget)[0]);
     if (grid) return grid;
     throw Error(ExitCode::Input,
                 describe(path, name) + " is a scalar grid; a vector is needed here");

@@ -214,14 +214,14 @@ void copy_node(const openvdb::FloatTree& tree, const openvdb::Coord& origin, Vec
     value = sanitized(value);
     for (int x = 0; x < count.x; ++x) {
         for (int y = 0; y < count.y; ++y) {
-            float* row = out + x * x_step + y * y_step;
+            float* row = out + static_cast<ptrdiff_t>(x * x_step + y * y_step);
             if (!leaf) {
                 std::fill_n(row, count.z, value);
                 continue;
             }
             const auto row_number = static_cast<openvdb::Index>(x * 8 + y);
             const unsigned active = active_row(*leaf, row_number);
-            const float* data = leaf->buffer().data() + row_number * 8;
+            const float* data = leaf->buffer().data() + size_t{8} * row_number;
             for (int z = 0; z < count.z; ++z) {
                 row[z] = (active >> z & 1u) != 0u ? sanitized(data[z]) : 0.0f;
             }
@@ -273,7 +273,7 @@ std::shared_ptr<const BrickGrid> make_bricks(const openvdb::FloatGrid& grid,
                 const openvdb::Coord node(origin.x + 8 * d.x, origin.y + 8 * d.y,
                                           origin.z + 8 * d.z);
                 const Vec3i count = Vec3i(8) - 7 * d;
-                copy_node(tree, node, count, values + (d.x * 81 + d.y * 9 + d.z) * 8);
+                copy_node(tree, node, count, values + ptrdiff_t{8} * (d.x * 81 + d.y * 9 + d.z));
             }
         };
         *out = build_bricks(block_table(grid, found, budget), fill, budget, describe(grid));

@@ -75,10 +75,9 @@ Spectrum difference_of(const TraceContext& context, const PixelDomain& here,
                        const PixelDomain& there, int count, Rng& rng, bool& truncated)
 {
     const Media& media = context.scene.media;
-    // As many as the light that collides is worth: on thin smoke fewer.
     const float lost = std::max(lost_on(here), lost_on(there));
     if (!(lost > 0.0f)) return Spectrum(0.0f);
-    const float share = 1.0f / (lost * static_cast<float>(count));
+    const float share = 1.0f / paths_worth(lost, count);
     const bool translates = has_one_phase(media);
     Spectrum sum(0.0f);
     for (float u = rng.uniform() * share; u < 1.0f; u += share) {
@@ -98,7 +97,7 @@ Spectrum light_of_root(const TraceContext& context, const PixelDomain& root, int
 {
     const float lost = lost_on(root);
     if (!(lost > 0.0f)) return Spectrum(0.0f);
-    const float share = 1.0f / (lost * static_cast<float>(count));
+    const float share = 1.0f / paths_worth(lost, count);
     Spectrum sum(0.0f);
     for (float u = rng.uniform() * share; u < 1.0f; u += share) {
         const PairedEvent a = event_at(context.scene.media, root, u, rng.uniform());
@@ -178,7 +177,7 @@ bool is_worth_sharing(const FrameDomain& frame, const RayPyramid& pyramid)
     if (!frame.caches->local_lights.empty()) return false;
     // Measured on plumes of 240 to 1280 pixels: at 0.1 mean free paths (g = 0.3) pairs and paths of
     // one's own are equally good, at 0.04 pairs are three times better.
-    constexpr float most_apart = 0.08f / 0.7f;
+    constexpr float most_apart = 0.06f / 0.7f;
     const PixelDomain& root = pyramid.rays.front().domain;
     if (root.bins.empty()) return true;  // whatever there is, is thin
     float widest = 0.0f;

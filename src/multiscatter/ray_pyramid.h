@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "core/parallel.h"
@@ -38,6 +40,13 @@ struct RayPyramid {
     }
     [[nodiscard]] size_t index_of(int level, int x, int y) const;
 };
+
+/// How many of `count` paths or pairs a ray is worth on which a share `lost` of the light collides:
+/// in proportion to it, but where smoke is thin more, as a few heavy paths would show as spots.
+[[nodiscard]] inline float paths_worth(float lost, int count)
+{
+    return std::max(lost * static_cast<float>(count), std::sqrt(lost));
+}
 
 /// How many pairs or paths are spent.
 struct RayPyramidParams {

@@ -116,12 +116,10 @@ void add_indirect(const PassInputs& inputs, const PixelDomain& domain, const Sur
 {
     const Scene& scene = *inputs.domain.scene;
     const float depth = domain.bins.depth();
-    const auto paths = static_cast<float>(inputs.domain.params.indirect_paths);
     const float lost = surface ? 1.0f : -std::expm1(-depth);
     if (!(lost > 0.0f)) return;
-    // As many as the light that collides is worth: on thin smoke fewer.
-    const float step = 1.0f / (lost * paths);
-    const float weight = 1.0f / paths;
+    const float step = 1.0f / paths_worth(lost, inputs.domain.params.indirect_paths);
+    const float weight = lost * step;
     const CachedGuesses guesses(*inputs.domain.caches);
     const TraceContext context = context_with(inputs, guesses);
     for (float u = rng.uniform() * step; u < 1.0f; u += step) {

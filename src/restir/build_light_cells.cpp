@@ -260,7 +260,7 @@ void LightCells::fill_cell(const Cell& cell, const CutLanes& lanes, Vec3 eye)
         sum += known * weight[n] + by_power * share + by_count;
         // Every entry keeps at least one quantum, those that follow included.
         const uint32_t most = 65536 - (cut.count - 1 - n);
-        before = std::clamp(static_cast<uint32_t>(65536.0f * std::min(sum, 1.0f) + 0.5f),
+        before = std::clamp(static_cast<uint32_t>(std::lround(65536.0f * std::min(sum, 1.0f))),
                             before + 1, most);
         cdf[n] = static_cast<uint16_t>(std::min(before, 65535u));
     }

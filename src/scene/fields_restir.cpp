@@ -76,7 +76,7 @@ void describe(FieldVisitor& v, RestirParams& restir)
         {.key = "indirect",
          .doc = "Light scattered twice and more in media: paths of each pixel's own, or "
                 "pairs of paths from its ray and rays that neighbouring pixels share; auto: "
-                "shared where pixels are closer together than a tenth of a mean free path and "
+                "shared where pixels are closer together than a fifteenth of a mean free path and "
                 "nothing but the camera moves while the shutter is open"},
         restir.indirect, indirect_names);
     visit(v,

@@ -223,7 +223,8 @@ TEST(CacheErrors, Ply)
               "1:1: a line of more than 1048576 bytes");
     EXPECT_EQ(failure(f, "a.ply",
                       "ply\nformat binary_little_endian 1.0\nelement vertex 1000001\n" + xyz +
-                          "end_header\n" + std::string(12'000'012, '\0'),
+                          "end_header\n" +
+                          std::string(12'000'012, '\0'),  // NOLINT(bugprone-string-constructor)
                       ExitCode::Memory),
               " 1000001 particles, but max_particles is 1000000; raise it if the machine has the "
               "memory (about 60 bytes each)");

@@ -101,6 +101,7 @@ std::vector<float> depths(const Media& media, std::span<const DepthQuery> querie
 std::vector<uint32_t> bits_of(const std::vector<float>& values)
 {
     std::vector<uint32_t> out;
+    out.reserve(values.size());
     for (const float v : values) out.push_back(std::bit_cast<uint32_t>(v));
     return out;
 }
