@@ -71,8 +71,6 @@ struct Pair {
         const float own_weight = 1.0f / (start + (1.0f - start) * new_ratio);
         return {own_weight, new_ratio * own_weight};
     }
-    /// By how much the sampled path counts where the other cannot follow.
-    [[nodiscard]] float alone() const { return 1.0f / start; }
 };
 
 /// What the path finds next.
@@ -241,7 +239,7 @@ class PairTracer {
     [[nodiscard]] Spectrum follow_alone(const Pair& pair, int event_count)
     {
         const ScatterEvent event{pair.own.x, pair.own.wo, time_, pair.own.phase};
-        const Spectrum weight = pair.alone() * pair.own.weight;
+        const Spectrum weight = pair.weights_with(0.0f).own * pair.own.weight;
         const float size = max_component(glm::abs(weight));
         if (!(size > 0.0f)) return Spectrum(0.0f);
         return weight * scattered_light(context_, event, event_count, params_.roulette / size, rng_,

@@ -7,6 +7,7 @@
 #include "restir/media_mixture.h"
 #include "restir/ray_flight.h"
 #include "volumes/media_extent.h"
+#include "volumes/phase_list.h"
 
 namespace mote {
 namespace {
@@ -64,10 +65,8 @@ PairedEvent event_at(const Media& media, const PixelDomain& domain, float u, flo
 bool has_one_phase(const Media& media)
 {
     const Phase& first = media.volumes.front().phase;
-    return std::all_of(media.volumes.begin(), media.volumes.end(), [&](const Volume& volume) {
-        return volume.phase.g == first.g && volume.phase.g_b == first.g_b &&
-               volume.phase.weight_b == first.weight_b;
-    });
+    return std::all_of(media.volumes.begin(), media.volumes.end(),
+                       [&](const Volume& volume) { return is_same_phase(volume.phase, first); });
 }
 
 /// I(here) - I(there) by `count` pairs.
@@ -110,6 +109,14 @@ Spectrum light_of_root(const TraceContext& context, const PixelDomain& root, int
     return sum;
 }
 
+/// Through the middle of some pixels, of the lens and of the shutter.
+Ray middle_ray(const Camera& camera, const Tile& pixels)
+{
+    const Vec2 lo(pixels.x0, pixels.y0);
+    const Vec2 hi(pixels.x1, pixels.y1);
+    return generate_ray(camera, 0.5f * (lo + hi), Vec2(0.5f), cache_time);
+}
+
 /// Calls f(x0, y0) for the blocks of a level that have pixels; in image pixels.
 template <class F>
 void for_each_block(const Tile& tile, int level, F&& f)
@@ -137,11 +144,10 @@ void make_ray_pyramid(const FrameDomain& frame, const Tile& tile, RayPyramid& py
     pyramid.rays.resize(first_of(0));
     for (int level = RayPyramid::levels; level >= 1; --level) {
         for_each_block(tile, level, [&](int x, int y) {
-            const Vec2 lo(x, y);
-            const Vec2 hi(std::min(x + (1 << level), tile.x1), std::min(y + (1 << level), tile.y1));
-            const Ray ray = generate_ray(camera, 0.5f * (lo + hi), Vec2(0.5f), cache_time);
-            make_pixel_domain(frame, ray, pyramid.rays[pyramid.index_of(level, x, y)].domain,
-                              counts);
+            const Tile block{x, y, std::min(x + (1 << level), tile.x1),
+                             std::min(y + (1 << level), tile.y1)};
+            make_pixel_domain(frame, middle_ray(camera, block),
+                              pyramid.rays[pyramid.index_of(level, x, y)].domain, counts);
         });
     }
 }
@@ -171,14 +177,15 @@ Spectrum light_of_pixel(const TraceContext& context, const RayPyramidParams& par
            difference_of(context, domain, nearest.domain, params.pairs, rng, truncated);
 }
 
-bool is_worth_sharing(const FrameDomain& frame, const RayPyramid& pyramid)
+bool is_worth_sharing(const FrameDomain& frame, const Tile& tile, BinCounts& counts)
 {
     const Scene& scene = *frame.scene;
     if (!frame.caches->local_lights.empty()) return false;
     // Measured on plumes of 240 to 1280 pixels: at 0.1 mean free paths (g = 0.3) pairs and paths of
     // one's own are equally good, at 0.04 pairs are three times better.
     constexpr float most_apart = 0.06f / 0.7f;
-    const PixelDomain& root = pyramid.rays.front().domain;
+    PixelDomain root;
+    make_pixel_domain(frame, middle_ray(scene.camera, tile), root, counts);
     if (root.bins.empty()) return true;  // whatever there is, is thin
     float widest = 0.0f;
     for (const Volume& volume : scene.media.volumes) {
@@ -198,18 +205,6 @@ bool is_worth_sharing(const FrameDomain& frame, const RayPyramid& pyramid)
     const float pixel =
         root.bins.world_t(at) * 2.0f * camera.tan_half_fov_y / static_cast<float>(camera.height);
     return pixel * root.bins.depth() < most_apart * (1.0f - widest) * inside;
-}
-
-bool can_share_rays(const Scene& scene)
-{
-    for (const Volume& volume : scene.media.volumes) {
-        if (volume.world_from_object.is_moving()) return false;
-    }
-    if (!scene.surfaces) return true;
-    const std::vector<MeshInstance>& instances = scene.surfaces->bvh->instances();
-    return std::none_of(instances.begin(), instances.end(), [](const MeshInstance& instance) {
-        return instance.world_from_object.is_moving();
-    });
 }
 
 }  // namespace mote

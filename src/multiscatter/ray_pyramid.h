@@ -17,10 +17,11 @@ namespace mote {
 /// where every bracket is estimated by pairs of paths (estimate_difference): the nearer two rays,
 /// the less noise, and the further apart, the more pixels share the cost. Unbiased for any rays.
 /// A multilevel Monte Carlo estimator (Heinrich 2001; Giles 2008) over image space, with the pairs
-/// of gradient-domain rendering (Kettunen et al. 2015).
+/// of gradient-domain rendering (Kettunen et al. 2015). Precondition: is_still_but_for_camera.
 ///
-/// The error that the pixels of a tile share is smooth, but per tile: it shows as faint squares
-/// where few passes are rendered.
+/// The error that the pixels of a block share shows as squares where few passes are rendered, and
+/// at the smoke's edge as single dark or bright ones. Memory: 85 tabulated rays of about 2 KB for
+/// each tile under way; nothing per pixel.
 struct RayPyramid {
     static constexpr int levels = 4;
     static constexpr int root_size = 1 << levels;  ///< [px]
@@ -69,11 +70,8 @@ void light_ray_pyramid(const TraceContext& context, const RayPyramidParams& para
 
 /// Whether sharing pays on this tile: where neighbouring pixels are much closer together than the
 /// smoke's mean free path, narrow lobes counting as shorter ones, and no lamps are near, whose
-/// light changes from place to place. Known before any path is traced.
-[[nodiscard]] bool is_worth_sharing(const FrameDomain& frame, const RayPyramid& pyramid);
-
-/// Whether pixels of a scene may share rays: nothing but the camera moves while the shutter is open
-/// (else the light of two rays would belong to different times).
-[[nodiscard]] bool can_share_rays(const Scene& scene);
+/// light changes from place to place. Cost: the ray through the
+/// tile's middle, where there are no lamps.
+[[nodiscard]] bool is_worth_sharing(const FrameDomain& frame, const Tile& tile, BinCounts& counts);
 
 }  // namespace mote

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "multiscatter/still_scene.h"
 #include "reference/path_tracer.h"
 #include "restir/cache_stats.h"
 #include "restir/in_view.h"
@@ -108,7 +109,7 @@ NodeBudget budget_of(const std::vector<NodeView>& views, const ScatterNodesParam
 
 /// Mean of a node's paths. `mean_count` of them are traced on average.
 Spectrum trace_node(const TraceContext& context, const Phase& phase, Vec3 node, Vec3 wo,
-                    float mean_count, Rng& rng, int64_t& traced)
+                    float mean_count, Rng& rng)
 {
     int count = static_cast<int>(std::lround(std::min(mean_count, 1e6f)));
     float weight = 1.0f / static_cast<float>(std::max(count, 1));
@@ -121,7 +122,6 @@ Spectrum trace_node(const TraceContext& context, const Phase& phase, Vec3 node, 
     for (int i = 0; i < count; ++i) {
         sum += weight * trace_after_event(context, event, rng).indirect;
     }
-    traced += count;
     return sum;
 }
 
@@ -155,14 +155,7 @@ bool can_have_scatter_nodes(const Scene& scene, const PathTracerParams& path)
     const std::vector<Volume>& volumes = scene.media.volumes;
     if (path.max_bounces < 2 || std::all_of(volumes.begin(), volumes.end(), is_void)) return false;
     if (!media_in_view(scene)) return false;
-    for (const Volume& volume : volumes) {
-        if (volume.world_from_object.is_moving()) return false;
-    }
-    if (!scene.surfaces) return true;
-    const std::vector<MeshInstance>& instances = scene.surfaces->bvh->instances();
-    return std::none_of(instances.begin(), instances.end(), [](const MeshInstance& instance) {
-        return instance.world_from_object.is_moving();
-    });
+    return is_still_but_for_camera(scene);
 }
 
 ScatterNodes make_scatter_nodes(const TraceContext& context, const ScatterNodesParams& params)
@@ -186,7 +179,6 @@ ScatterNodes make_scatter_nodes(const TraceContext& context, const ScatterNodesP
     const size_t slots = lattice.nodes.size();
     const float per_importance = budget.per_importance;
     out.radiance.assign(out.phases.size() * slots, Spectrum(0.0f));
-    std::vector<int64_t> traced(slots, 0);
     parallel_for(slots - 1, grain, [&](size_t begin, size_t end) {
         for (size_t i = begin + 1; i < end + 1; ++i) {
             const Vec3 node = lattice.position(lattice.nodes[i]);
@@ -194,12 +186,11 @@ ScatterNodes make_scatter_nodes(const TraceContext& context, const ScatterNodesP
             for (size_t p = 0; p < out.phases.size(); ++p) {
                 Rng rng(params.seed, static_cast<uint32_t>(scene.frame), Stream::ScatterNodes,
                         static_cast<uint32_t>(i), static_cast<uint32_t>(p));
-                out.radiance[p * slots + i] = trace_node(context, out.phases.phases[p], node,
-                                                         out.wo(node), mean, rng, traced[i]);
+                out.radiance[p * slots + i] =
+                    trace_node(context, out.phases.phases[p], node, out.wo(node), mean, rng);
             }
         }
     });
-    for (const int64_t n : traced) out.paths += n;
     out.cpu_seconds = process_cpu_seconds() - start;
     return out;
 }

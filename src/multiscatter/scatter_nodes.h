@@ -1,11 +1,9 @@
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "reference/trace_context.h"
 #include "restir/smoke_lattice.h"
-
 #include "volumes/phase_list.h"
 
 namespace mote {
@@ -15,13 +13,12 @@ namespace mote {
 /// pixel shares. In-scattered radiance [W/(m^2 sr)], the node's albedo left out.
 ///
 /// Many pixels see the same nodes, so a frame pays for few paths. What interpolation between nodes
-/// gets wrong is what estimate_difference corrects.
+/// gets wrong nobody corrects: for previews.
 struct ScatterNodes {
     SmokeLattice lattice;
     Vec3 eye{0.0f};  ///< where the camera is [m]
     PhaseList phases;
     std::vector<Spectrum> radiance;  ///< per phase function and slot; slot 0 is black
-    int64_t paths = 0;               ///< traced for them
     double cpu_seconds = 0.0;
 
     [[nodiscard]] Spectrum at(size_t phase, int32_t slot) const
@@ -34,10 +31,6 @@ struct ScatterNodes {
         const Vec3 to_eye = eye - node;
         const float distance = glm::length(to_eye);
         return distance > 0.0f ? to_eye / distance : Vec3(0.0f, 0.0f, 1.0f);
-    }
-    [[nodiscard]] int64_t memory_bytes() const
-    {
-        return lattice.memory_bytes() + static_cast<int64_t>(radiance.size() * sizeof(Spectrum));
     }
 };
 

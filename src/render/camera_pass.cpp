@@ -2,6 +2,7 @@
 
 #include "multiscatter/cached_lights.h"
 #include "multiscatter/scatter_along.h"
+#include "multiscatter/still_scene.h"
 #include "reference/path_tracer.h"
 #include "render/motion.h"
 #include "render/view_depth.h"
@@ -111,13 +112,14 @@ TraceContext context_with(const PassInputs& inputs, const CachedGuesses& guesses
 
 /// Light scattered twice and more, by the path tracer from exact first events on: stratified free
 /// flights, each worth the share of light that collides; where a surface ends the ray, that is all.
+/// `surface_only`: what media scatter first comes from elsewhere.
 void add_indirect(const PassInputs& inputs, const PixelDomain& domain, const SurfaceVertex* surface,
                   bool surface_only, Rng& rng, FilmSample& sample, bool& truncated)
 {
     const Scene& scene = *inputs.domain.scene;
     const float depth = domain.bins.depth();
     const float lost = surface ? 1.0f : -std::expm1(-depth);
-    if (!(lost > 0.0f)) return;
+    if (!(lost > 0.0f) || (surface_only && !surface)) return;
     const float step = 1.0f / paths_worth(lost, inputs.domain.params.indirect_paths);
     const float weight = lost * step;
     const CachedGuesses guesses(*inputs.domain.caches);
@@ -223,13 +225,14 @@ std::unique_ptr<RayPyramid> make_tile_pyramid(const PassInputs& inputs, const Ti
     const Scene& scene = *inputs.domain.scene;
     const RestirParams& params = inputs.domain.params;
     const bool shares = params.indirect != IndirectLight::Paths && params.corrections &&
-                        inputs.render.path.max_bounces > 1 && can_share_rays(scene);
+                        inputs.render.path.max_bounces > 1 && is_still_but_for_camera(scene);
     if (!shares || !media_in_view(scene, tile)) return nullptr;
-    auto pyramid = std::make_unique<RayPyramid>();
-    make_ray_pyramid(inputs.domain, tile, *pyramid, counts.bins);
-    if (params.indirect == IndirectLight::Auto && !is_worth_sharing(inputs.domain, *pyramid)) {
+    if (params.indirect == IndirectLight::Auto &&
+        !is_worth_sharing(inputs.domain, tile, counts.bins)) {
         return nullptr;
     }
+    auto pyramid = std::make_unique<RayPyramid>();
+    make_ray_pyramid(inputs.domain, tile, *pyramid, counts.bins);
     return pyramid;
 }
 

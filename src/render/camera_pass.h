@@ -61,7 +61,7 @@ struct PassDomain {
 /// Tabulates the media along the pixel's camera ray, up to a surface, and fills all parts of the
 /// sample that need no reservoir: background and alpha in closed form, emission by one point per
 /// brick with exact transmittance, lights at infinity by control variate (corrections go to `rays`
-/// under `owner`), two and more events by the path tracer. Pixels without smoke cost a bounds test.
+/// under `owner`), two and more events. Pixels without smoke cost a bounds test.
 /// `pyramid`: the tile's shared rays, lit for this pass; null: paths of many events are the pixel's
 /// own.
 void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray,

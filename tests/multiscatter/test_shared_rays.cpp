@@ -6,6 +6,7 @@
 
 #include "core/parallel.h"
 #include "multiscatter/ray_pyramid.h"
+#include "multiscatter/still_scene.h"
 #include "restir/room_scenes.h"
 #include "restir/runs.h"
 
@@ -197,12 +198,10 @@ TEST(SharedRays, AreUsedWherePixelsAreClose)
     const auto worth = [&] {
         const FrameDomain frame = make_frame_domain(
             test::borrow(scene.scene), make_light_caches(scene.scene, {}, nullptr), {});
-        RayPyramid pyramid;
         BinCounts counts;
         const int x = camera.width / 2;
         const int y = camera.height / 2;
-        make_ray_pyramid(frame, {x, y, x + 16, y + 16}, pyramid, counts);
-        return is_worth_sharing(frame, pyramid);
+        return is_worth_sharing(frame, {x, y, x + 16, y + 16}, counts);
     };
     camera.width = 1920;
     camera.height = 1080;
@@ -219,11 +218,27 @@ TEST(SharedRays, AreUsedWherePixelsAreClose)
 TEST(SharedRays, NeedAShutterDuringWhichOnlyTheCameraMoves)
 {
     Scene scene = test::sun_and_sky().scene;
-    EXPECT_TRUE(can_share_rays(scene));
+    EXPECT_TRUE(is_still_but_for_camera(scene));
     scene.camera.world_from_camera.keys.push_back({});
-    EXPECT_TRUE(can_share_rays(scene));
+    EXPECT_TRUE(is_still_but_for_camera(scene));
     scene.media.volumes[0].world_from_object.keys.push_back({});
-    EXPECT_FALSE(can_share_rays(scene));
+    EXPECT_FALSE(is_still_but_for_camera(scene));
+}
+
+/// The negative control of the comparisons above: the same effort finds out an event too few.
+TEST(SharedRaysStat, OneEventTooFewIsFoundOut)
+{
+    TestScene scene = with_bounces(test::sun_and_sky(), 3, "");
+    use_large_camera(scene.scene);
+    const test::Effort effort{32, 2, 16};
+    const TileStats reference = test::reference_runs(scene, effort);
+    scene.max_bounces = 2;
+    for (const IndirectLight indirect : {IndirectLight::Paths, IndirectLight::Shared}) {
+        RenderDescription render = test::description(scene, EstimatorKind::Restir, effort.samples);
+        render.restir.indirect = indirect;
+        const TileStats tested = test::render_runs(scene, render, effort.runs, 1);
+        EXPECT_LT(compare_runs(tested, reference).p, test::alarm);
+    }
 }
 
 }  // namespace
