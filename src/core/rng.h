@@ -39,7 +39,8 @@ enum class Stream : uint32_t {
     SurfaceTemporal,
     SurfaceSpatial,
     ScatterNodes,
-    Pyramid,
+    Indirect,
+    SharedPaths,
 };
 
 /// Counter-based generator: the n-th number of a stream is a pure function of its key and n, so

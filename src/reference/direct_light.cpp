@@ -32,8 +32,8 @@ float seen_emission_pdf(const EmissiveVolume& emissive, float pdf_dir, float dis
     return pdf_dir / (distance2 * emissive.length);
 }
 
-Spectrum estimate_emission_light(const TraceContext& context, const ScatterEvent& event,
-                                 const LightChoice& choice, Rng& rng)
+std::optional<ShadowRay> sample_emission_ray(const TraceContext& context, const ScatterEvent& event,
+                                             const LightChoice& choice, Rng& rng)
 {
     const EmissiveVolume& emissive =
         context.lights.emissive_volumes()[static_cast<size_t>(choice.index)];
@@ -42,34 +42,33 @@ Spectrum estimate_emission_light(const TraceContext& context, const ScatterEvent
     const EmissionSample sample = sample_emission(volume, emissive.bricks, event.time, rng);
     const Vec3 to_point = sample.p - event.x;
     const float distance2 = glm::dot(to_point, to_point);
-    if (!(distance2 > 0.0f) || !(max_component(sample.j) > 0.0f)) return Spectrum(0.0f);
+    if (!(distance2 > 0.0f) || !(max_component(sample.j) > 0.0f)) return std::nullopt;
     const float distance = std::sqrt(distance2);
     const Vec3 wi = to_point / distance;
     const Scattering scattering = eval_scattering(event, wi);
     const float pdf = choice.pmf * sample.pdf_volume;  // [1/m^3]
     const float weight = shadow_ray_weight(
         context.params, pdf, seen_emission_pdf(emissive, scattering.pdf_dir, distance2));
-    if (!(weight > 0.0f)) return Spectrum(0.0f);
-    if (scattering.f == Spectrum(0.0f)) return Spectrum(0.0f);
-    return sample.j * (weight * scattering.f / (distance2 * pdf)) *
-           estimate_visibility(context, event, wi, distance, rng);
+    if (!(weight > 0.0f)) return std::nullopt;
+    return ShadowRay{wi, distance, sample.j * (weight / (distance2 * pdf)), scattering};
 }
 
 }  // namespace
 
-Spectrum estimate_direct_light(const TraceContext& context, const ScatterEvent& event, Rng& rng)
+std::optional<ShadowRay> sample_shadow_ray(const TraceContext& context, const ScatterEvent& event,
+                                           Rng& rng)
 {
     const std::optional<LightChoice> choice = context.lights.choose(event.x, rng, context.guide);
-    if (!choice) return Spectrum(0.0f);
+    if (!choice) return std::nullopt;
     if (choice->source == LightSource::EmissiveVolume) {
-        return estimate_emission_light(context, event, *choice, rng);
+        return sample_emission_ray(context, event, *choice, rng);
     }
     const std::optional<LightSample> sample =
         choice->source == LightSource::Environment
             ? sample_environment(*context.scene.environment, rng)
             : sample_light(context.scene.lights[static_cast<size_t>(choice->index)], event.x,
                            rng.uniform2());
-    if (!sample) return Spectrum(0.0f);
+    if (!sample) return std::nullopt;
     const Scattering scattering = eval_scattering(event, sample->wi);
     const float pdf = choice->pmf * sample->pdf_dir;
     float pdf_equiangular = 0.0f;
@@ -78,10 +77,16 @@ Spectrum estimate_direct_light(const TraceContext& context, const ScatterEvent& 
     }
     const float weight = shadow_ray_weight(
         context.params, pdf, sample->is_delta ? 0.0f : scattering.pdf_dir, pdf_equiangular);
-    if (!(weight > 0.0f) || !(max_component(sample->Li) > 0.0f)) return Spectrum(0.0f);
-    if (scattering.f == Spectrum(0.0f)) return Spectrum(0.0f);
-    return sample->Li * (weight * scattering.f / pdf) *
-           estimate_visibility(context, event, sample->wi, sample->distance, rng);
+    if (!(weight > 0.0f) || !(max_component(sample->Li) > 0.0f)) return std::nullopt;
+    return ShadowRay{sample->wi, sample->distance, sample->Li * (weight / pdf), scattering};
+}
+
+Spectrum estimate_direct_light(const TraceContext& context, const ScatterEvent& event, Rng& rng)
+{
+    const std::optional<ShadowRay> ray = sample_shadow_ray(context, event, rng);
+    if (!ray || ray->scattering.f == Spectrum(0.0f)) return Spectrum(0.0f);
+    return ray->light * ray->scattering.f *
+           estimate_visibility(context, event, ray->wi, ray->distance, rng);
 }
 
 Spectrum seen_light(const TraceContext& context, const LightRay& light_ray,

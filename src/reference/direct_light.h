@@ -17,6 +17,18 @@ struct LightRay {
     float t_surface = infinity;         ///< where a surface ends it [m]
 };
 
+/// A shadow ray, not traced yet.
+struct ShadowRay {
+    Vec3 wi{0.0f};
+    float distance = infinity;  ///< to the light [m]
+    Spectrum light{0.0f};   ///< over density, with its MIS weight; not scattered, nor attenuated
+    Scattering scattering;  ///< of the event, towards the ray
+};
+
+/// The shadow ray of estimate_direct_light; empty where no light is found.
+[[nodiscard]] std::optional<ShadowRay> sample_shadow_ray(const TraceContext& context,
+                                                         const ScatterEvent& event, Rng& rng);
+
 /// Light that reaches the event by one shadow ray and scatters towards wo, weighted against
 /// scattered rays that could have found it. Unbiased together with seen_light of the scattered ray.
 [[nodiscard]] Spectrum estimate_direct_light(const TraceContext& context, const ScatterEvent& event,

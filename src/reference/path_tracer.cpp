@@ -1,6 +1,7 @@
 #include "reference/path_tracer.h"
 
 #include "reference/direct_light.h"
+#include "reference/trace_segment.h"
 
 namespace mote {
 namespace {
@@ -52,38 +53,21 @@ void follow(const TraceContext& context, const PathState& start,
     bool first_is_surface = start.first_is_surface;
     const Scene& scene = context.scene;
     const PathTracerParams& params = context.params;
-    const bool has_emission = !context.lights.emissive_volumes().empty();
     FirstEvent first;
     for (;; ++event_count) {
-        const Ray& ray = light_ray.ray;
         const bool is_last = event_count == params.max_bounces;
-        const bool needs_flight = event_count == 0 || !is_last || has_emission;
         const auto add = [&](Spectrum& camera_part, Spectrum light) {
             (event_count == 0 ? camera_part : part_of(result, event_count, first_is_surface)) +=
                 beta * light;
         };
-        const std::optional<SurfaceHit> hit = find_surface(scene, ray);
-        if (hit) light_ray.t_surface = hit->t;
-        // A ray after the last event only collects light: a transmittance estimate is less noisy
-        // than asking whether a free flight gets there.
-        std::optional<Collision> collision;
-        std::optional<float> t_end;
-        if (needs_flight) {
-            collision = sample_free_flight(scene.media, ray, {0.0f, light_ray.t_surface}, rng);
-            t_end = collision ? collision->t : light_ray.t_surface;
-        }
-        if (has_emission) add(result.emission, seen_emission(context, light_ray, *t_end, rng));
-        if (is_last && event_count > 0) t_end.reset();
-        add(result.background, seen_light(context, light_ray, t_end, rng));
-        std::optional<SurfaceVertex> vertex;
-        if (hit && (!collision || !t_end)) vertex = make_vertex(*scene.surfaces, *hit, ray.time);
-        if (vertex && vertex->material.is_emissive()) {
-            const float arrives =
-                t_end ? 1.0f
-                      : estimate_transmittance(scene.media, ray, {0.0f, light_ray.t_surface},
-                                               params.transmittance, rng);
-            add(result.surface_emission, arrives * seen_surface_light(context, light_ray, *vertex));
-        }
+        const TracedSegment found =
+            trace_segment(context, light_ray, is_last && event_count > 0, rng);
+        add(result.emission, found.emission);
+        add(result.background, found.background);
+        add(result.surface_emission, found.surface_emission);
+        const std::optional<Collision>& collision = found.collision;
+        const std::optional<SurfaceVertex>& vertex = found.vertex;
+        const Ray& ray = light_ray.ray;
 
         if (is_last) result.truncated = event_count > 0 || collision || vertex;
         if (!collision && !vertex) return;
@@ -102,9 +86,9 @@ void follow(const TraceContext& context, const PathState& start,
         if (event_count == 0) {
             first_is_surface = !collision;
             result.transmittance = 0.0f;
-            result.depth = collision ? collision->t : hit->t;
+            result.depth = collision ? collision->t : light_ray.t_surface;
             result.albedo = albedo;
-            result.object = collision ? -1 : hit->object;
+            result.object = collision ? -1 : vertex->object;
         }
         if (is_last) return;
 

@@ -19,9 +19,17 @@ std::optional<ScatteredDirection> sample_towards(const ScatterEvent& event, Vec3
 
 std::optional<ScatteredDirection> sample_scattering(const ScatterEvent& event, Rng& rng)
 {
-    if (!event.ways) return sample_towards(event, event.wo, rng);
-    const Vec3 wo = event.ways->wo[rng.uniform() < 0.5f ? 0 : 1];
-    std::optional<ScatteredDirection> s = sample_towards(event, wo, rng);
+    if (!event.mixture) return sample_towards(event, event.wo, rng);
+    const WayMixture& mixture = *event.mixture;
+    float u = rng.uniform();
+    size_t chosen = 0;
+    for (size_t i = 0; i < mixture.wo.size(); ++i) {
+        if (!(mixture.share[i] > 0.0f)) continue;
+        chosen = i;
+        u -= mixture.share[i];
+        if (u < 0.0f) break;
+    }
+    std::optional<ScatteredDirection> s = sample_towards(event, mixture.wo[chosen], rng);
     if (!s) return std::nullopt;
     s->scattering = eval_scattering(event, s->wi);
     if (!(s->scattering.pdf_dir > 0.0f)) return std::nullopt;

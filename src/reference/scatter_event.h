@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 
 #include "core/rng.h"
 #include "reference/equiangular.h"
@@ -9,11 +10,11 @@
 
 namespace mote {
 
-/// Two places that light scattered at one event goes to, each with a weight of any sign: one path
-/// behind the event then serves both.
-struct TwoWays {
-    Vec3 wo[2];  ///< [unit, away from the event]
-    Spectrum weight[2]{Spectrum(0.0f), Spectrum(0.0f)};
+/// Places that light scattered at one event may go to, each with a probability: the event is then
+/// sampled, and weighted by MIS, for all of them alike.
+struct WayMixture {
+    std::span<const Vec3> wo;      ///< [unit, away from the event]
+    std::span<const float> share;  ///< sum to 1
 };
 
 /// A scattering event, about to be lit: in a medium, or on a surface.
@@ -24,13 +25,13 @@ struct ScatterEvent {
     const Phase* phase = nullptr;            ///< of the medium
     const FirstEvent* first = nullptr;       ///< set if equiangular sampling competes
     const SurfaceVertex* surface = nullptr;  ///< set on surfaces; there is no phase then
-    const TwoWays* ways = nullptr;           ///< instead of wo, if set
+    const WayMixture* mixture = nullptr;     ///< instead of wo, if set
 };
 
 /// How an event scatters light from one direction.
 struct Scattering {
-    Spectrum f{0.0f};      ///< phase function, or BSDF times cosine [1/sr]; of two ways the
-                           ///< weighted sum
+    Spectrum f{0.0f};      ///< phase function, or BSDF times cosine [1/sr]; of a mixture
+                           ///< the mean
     float pdf_dir = 0.0f;  ///< with which sample_scattering draws the direction [1/sr]
 };
 
@@ -47,15 +48,19 @@ struct Scattering {
 
 [[nodiscard]] inline Scattering eval_scattering(const ScatterEvent& event, Vec3 wi)
 {
-    if (!event.ways) return eval_scattering_to(event, event.wo, wi);
-    const TwoWays& ways = *event.ways;
-    const Scattering a = eval_scattering_to(event, ways.wo[0], wi);
-    const Scattering b = eval_scattering_to(event, ways.wo[1], wi);
-    return {ways.weight[0] * a.f + ways.weight[1] * b.f, 0.5f * (a.pdf_dir + b.pdf_dir)};
+    if (!event.mixture) return eval_scattering_to(event, event.wo, wi);
+    Scattering sum;
+    for (size_t i = 0; i < event.mixture->wo.size(); ++i) {
+        const float share = event.mixture->share[i];
+        const Scattering s = eval_scattering_to(event, event.mixture->wo[i], wi);
+        sum.f += share * s.f;
+        sum.pdf_dir += share * s.pdf_dir;
+    }
+    return sum;
 }
 
-/// A scattered direction, drawn with density pdf_dir of its scattering. Of two ways either is taken
-/// with probability 1/2. Empty if nothing is scattered.
+/// A scattered direction, drawn with density pdf_dir of its scattering; of a mixture
+/// either way is taken with its share. Empty if nothing is scattered.
 struct ScatteredDirection {
     Vec3 wi{0.0f};
     Scattering scattering;

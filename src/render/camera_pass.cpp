@@ -1,9 +1,6 @@
 #include "render/camera_pass.h"
 
-#include "multiscatter/cached_lights.h"
-#include "multiscatter/scatter_along.h"
-#include "multiscatter/still_scene.h"
-#include "reference/path_tracer.h"
+#include "render/indirect_pass.h"
 #include "render/motion.h"
 #include "render/view_depth.h"
 #include "restir/emission_along.h"
@@ -85,71 +82,6 @@ void add_first_collision(const PassInputs& inputs, const PixelDomain& domain,
     if (aovs.needs_motion()) sample.motion = film_motion(scene, domain.ray, t, object);
 }
 
-/// The scattering event in a medium at optical depth tau; its albedo, black if there is none.
-Spectrum medium_event(const Scene& scene, const PixelDomain& domain, float tau, float choice,
-                      ScatterEvent& event)
-{
-    event.x =
-        domain.ray.at(domain.bins.world_t(distance_at(scene.media, domain.ray, domain.bins, tau)));
-    Spectrum albedo(0.0f);
-    float before = 0.0f;
-    for_each_scatterer(scene.media, event.x, event.time,
-                       [&](const Volume& volume, float share, Spectrum own) {
-                           if (!event.phase || choice >= before) {
-                               event.phase = &volume.phase;
-                               albedo = own;
-                           }
-                           before += share;
-                       });
-    return albedo;
-}
-
-TraceContext context_with(const PassInputs& inputs, const CachedGuesses& guesses)
-{
-    return {*inputs.domain.scene, inputs.lights, inputs.render.path, &guesses.shadows,
-            guesses.guide()};
-}
-
-/// Light scattered twice and more, by the path tracer from exact first events on: stratified free
-/// flights, each worth the share of light that collides; where a surface ends the ray, that is all.
-/// `surface_only`: what media scatter first comes from elsewhere.
-void add_indirect(const PassInputs& inputs, const PixelDomain& domain, const SurfaceVertex* surface,
-                  bool surface_only, Rng& rng, FilmSample& sample, bool& truncated)
-{
-    const Scene& scene = *inputs.domain.scene;
-    const float depth = domain.bins.depth();
-    const float lost = surface ? 1.0f : -std::expm1(-depth);
-    if (!(lost > 0.0f) || (surface_only && !surface)) return;
-    const float step = 1.0f / paths_worth(lost, inputs.domain.params.indirect_paths);
-    const float weight = lost * step;
-    const CachedGuesses guesses(*inputs.domain.caches);
-    const TraceContext context = context_with(inputs, guesses);
-    for (float u = rng.uniform() * step; u < 1.0f; u += step) {
-        const float tau = -std::log1p(-std::min(u, one_minus_epsilon) * lost);
-        const float choice = rng.uniform();
-        ScatterEvent first{Vec3(0.0f), domain.wo(), domain.ray.time, nullptr, nullptr, nullptr};
-        Spectrum albedo(1.0f);
-        const bool on_surface = surface && !(tau < depth);
-        if (surface_only && !on_surface) continue;
-        if (on_surface) {
-            first.x = surface->p;
-            first.surface = surface;
-        } else {
-            albedo = medium_event(scene, domain, tau, choice, first);
-            if (!first.phase) continue;
-        }
-        const PathResult path = trace_after_event(context, first, rng);
-        sample.indirect += weight * albedo * path.indirect;
-        sample.surface_indirect += weight * path.surface_indirect;
-        truncated |= path.truncated;
-    }
-}
-
-RayPyramidParams pyramid_params(const PassInputs& inputs)
-{
-    return {inputs.domain.params.indirect_pairs};
-}
-
 /// Of what ends the ray: its emission, normal and place, and the domain of its samples.
 void begin_surface(const PassInputs& inputs, const PassKey& key, PassDomain& domain,
                    FilmSample& sample)
@@ -219,35 +151,8 @@ std::optional<FilmSample> uniform_tile(const PassInputs& inputs, const Tile& til
     return sample;
 }
 
-std::unique_ptr<RayPyramid> make_tile_pyramid(const PassInputs& inputs, const Tile& tile,
-                                              PassCounts& counts)
-{
-    const Scene& scene = *inputs.domain.scene;
-    const RestirParams& params = inputs.domain.params;
-    const bool shares = params.indirect != IndirectLight::Paths && params.corrections &&
-                        inputs.render.path.max_bounces > 1 && is_still_but_for_camera(scene);
-    if (!shares || !media_in_view(scene, tile)) return nullptr;
-    if (params.indirect == IndirectLight::Auto &&
-        !is_worth_sharing(inputs.domain, tile, counts.bins)) {
-        return nullptr;
-    }
-    auto pyramid = std::make_unique<RayPyramid>();
-    make_ray_pyramid(inputs.domain, tile, *pyramid, counts.bins);
-    return pyramid;
-}
-
-void light_tile_pyramid(const PassInputs& inputs, uint32_t pass, RayPyramid* pyramid)
-{
-    if (!pyramid) return;
-    Rng rng = pass_rng(inputs, {pyramid->tile.x0, pyramid->tile.y0, pass}, Stream::Pyramid);
-    bool truncated = false;
-    const CachedGuesses guesses(*inputs.domain.caches);
-    light_ray_pyramid(context_with(inputs, guesses), pyramid_params(inputs), rng, *pyramid,
-                      truncated);
-}
-
-void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray,
-                const RayPyramid* pyramid, int owner, PassDomain& domain, LightRays& rays,
+void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray, int owner,
+                PassDomain& domain, LightRays& rays, std::vector<PathVertex>& first,
                 FilmSample& sample, PassCounts& counts)
 {
     const FrameDomain& frame = inputs.domain;
@@ -280,27 +185,15 @@ void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray,
     }
     const int max_bounces = inputs.render.path.max_bounces;
     if (is_empty || max_bounces == 0) return;
-    Rng rng = pass_rng(inputs, key, Stream::Path);
     const CorrectionPairs pairs{static_cast<uint32_t>(NumberPair::Distances),
                                 static_cast<uint32_t>(NumberPair::Directions),
                                 static_cast<uint32_t>(NumberPair::Choices)};
     if (frame.params.control_variate) {
+        Rng rng = pass_rng(inputs, key, Stream::Path);
         sample.direct =
             scatter_infinite_lights(frame, ray, media.bins, numbers, pairs, rng, owner, rays);
     }
-    ++counts.truncated;
-    if (max_bounces > 1) {
-        bool truncated = false;
-        if (inputs.nodes) {
-            sample.indirect = scatter_along(*inputs.nodes, scene.media, ray, media.bins);
-        } else if (pyramid) {
-            const CachedGuesses guesses(*frame.caches);
-            sample.indirect = light_of_pixel(context_with(inputs, guesses), pyramid_params(inputs),
-                                             *pyramid, key.x, key.y, media, rng, truncated);
-        }
-        add_indirect(inputs, media, surface, pyramid || inputs.nodes, rng, sample, truncated);
-        counts.truncated += truncated ? 0 : -1;
-    }
+    add_indirect(inputs, key, media, surface, owner, first, sample, counts);
 }
 
 }  // namespace mote

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "core/sobol.h"
-#include "multiscatter/ray_pyramid.h"
+#include "multiscatter/path_vertex.h"
 #include "multiscatter/scatter_nodes.h"
 #include "render/aov.h"
 #include "render/film.h"
@@ -25,6 +25,7 @@ struct PassInputs {
     AovSet aovs;
     const LightSampler& lights;           ///< for paths of many events; empty if there are none
     const ScatterNodes* nodes = nullptr;  ///< for previews; null: none
+    bool shares_paths = false;            ///< of many events: see shares_paths()
 };
 
 /// One pixel's pass: where, and which.
@@ -62,18 +63,11 @@ struct PassDomain {
 /// sample that need no reservoir: background and alpha in closed form, emission by one point per
 /// brick with exact transmittance, lights at infinity by control variate (corrections go to `rays`
 /// under `owner`), two and more events. Pixels without smoke cost a bounds test.
-/// `pyramid`: the tile's shared rays, lit for this pass; null: paths of many events are the pixel's
-/// own.
-void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray,
-                const RayPyramid* pyramid, int owner, PassDomain& domain, LightRays& rays,
+/// Where paths are shared (shares_paths), events in media are put to `first` for
+/// light_shared_paths.
+void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray, int owner,
+                PassDomain& domain, LightRays& rays, std::vector<PathVertex>& first,
                 FilmSample& sample, PassCounts& counts);
-
-/// The rays that a tile's pixels share for light of many events; null where they have none.
-[[nodiscard]] std::unique_ptr<RayPyramid> make_tile_pyramid(const PassInputs& inputs,
-                                                            const Tile& tile, PassCounts& counts);
-
-/// Lights them for a pass. Null is left alone.
-void light_tile_pyramid(const PassInputs& inputs, uint32_t pass, RayPyramid* pyramid);
 
 /// What every pass of every pixel of a tile shows, if that is one and the same: a constant
 /// background, or none, and no medium or surface that a ray of the tile may meet.

@@ -5,6 +5,7 @@
 
 #include "core/parallel.h"
 #include "multiscatter/cached_lights.h"
+#include "render/indirect_pass.h"
 #include "render/restir_reuse.h"
 #include "render/surface_pass.h"
 #include "restir/cache_stats.h"
@@ -22,7 +23,7 @@ struct TileScratch {
     std::vector<FilmSample> samples;
     std::vector<PixelFilm> pixels;
     PassDomain domain;
-    std::unique_ptr<RayPyramid> pyramid;
+    std::vector<PathVertex> first;
 };
 
 void trace_tile_pass(const PassInputs& inputs, const Tile& tile, uint32_t pass,
@@ -31,15 +32,14 @@ void trace_tile_pass(const PassInputs& inputs, const Tile& tile, uint32_t pass,
     const FrameDomain& frame = inputs.domain;
     scratch.rays.clear();
     scratch.surface_rays.clear();
-    light_tile_pyramid(inputs, pass, scratch.pyramid.get());
     int owner = 0;
     for (int y = tile.y0; y < tile.y1; ++y) {
         for (int x = tile.x0; x < tile.x1; ++x, ++owner) {
             const PassKey key{x, y, pass};
             FilmSample& sample = scratch.samples[static_cast<size_t>(owner)];
             sample = {};
-            begin_pass(inputs, key, camera_ray(inputs, key), scratch.pyramid.get(), owner,
-                       scratch.domain, scratch.rays, sample, counts);
+            begin_pass(inputs, key, camera_ray(inputs, key), owner, scratch.domain, scratch.rays,
+                       scratch.first, sample, counts);
             if (inputs.render.path.max_bounces == 0) continue;
             if (scratch.domain.surface.is_sampled()) {
                 const SurfaceDomain& surface = scratch.domain.surface;
@@ -64,6 +64,9 @@ void trace_tile_pass(const PassInputs& inputs, const Tile& tile, uint32_t pass,
             }
         }
     }
+    const std::vector<Spectrum> shared =
+        light_shared_paths(inputs, tile, pass, scratch.first, counts);
+    for (size_t i = 0; i < shared.size(); ++i) scratch.samples[i].indirect += shared[i];
     scratch.rays.trace(*frame.scene, counts.light_rays);
     for (size_t i = 0; i < scratch.rays.size(); ++i) {
         FilmSample& sample = scratch.samples[static_cast<size_t>(scratch.rays.owners[i])];
@@ -105,7 +108,9 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
                    FrameHistory::Impl& history, Film& film, FrameStats& stats)
 {
     const double cpu_start = process_cpu_seconds();
-    history.caches = make_light_caches(scene, {pixel_passes(render)}, history.caches);
+    const bool may_share =
+        render.path.max_bounces > 1 && render.restir.indirect != IndirectLight::Paths;
+    history.caches = make_light_caches(scene, {pixel_passes(render), may_share}, history.caches);
     stats.cache_cpu_seconds = process_cpu_seconds() - cpu_start;
     const bool keeps_history = uses_history(render);
     const FrameDomain domain = make_frame_domain(
@@ -123,7 +128,8 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
             {render.restir.node_paths, render.restir.node_spacing, render.samples, render.seed});
         stats.cache_cpu_seconds += nodes->cpu_seconds;
     }
-    const PassInputs inputs{domain, render, aovs, lights, nodes ? &*nodes : nullptr};
+    const PassInputs inputs{
+        domain, render, aovs, lights, nodes ? &*nodes : nullptr, shares_paths(domain, render.path)};
     PassCounts counts;
     bool finished = false;
     if (plan.reuses_samples()) {
@@ -188,7 +194,6 @@ bool render_independent_passes(const PassInputs& inputs, const FrameControl& con
             for_pixels([&](int x, int y, PixelFilm& p) { p = accumulated->at(x, y); });
         }
         PassCounts tile_counts;
-        if (!uniform) scratch.pyramid = make_tile_pyramid(inputs, tile, tile_counts);
         int64_t tile_dropped = 0;
         const TrackingCounts tracking_before = tracking_counts;
         for (int pass = 0; pass < inputs.render.samples; ++pass) {

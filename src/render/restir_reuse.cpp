@@ -1,4 +1,5 @@
 #include "render/restir_reuse.h"
+#include "render/indirect_pass.h"
 
 #include <atomic>
 #include <mutex>
@@ -103,8 +104,7 @@ void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, const DomainSto
     std::vector<FilmSample*> samples;
     PassDomain pass_domain;
     PixelDomain& domain = pass_domain.media;
-    const std::unique_ptr<RayPyramid> pyramid = make_tile_pyramid(inputs, tile, n);
-    light_tile_pyramid(inputs, pass, pyramid.get());
+    std::vector<PathVertex> first_vertices;
     for (int y = tile.y0; y < tile.y1; ++y) {
         for (int x = tile.x0; x < tile.x1; ++x) {
             const PassKey key{x, y, pass};
@@ -114,7 +114,8 @@ void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, const DomainSto
             const auto owner = static_cast<int>(samples.size());
             samples.push_back(&sample);
             const Ray ray = kept ? kept->ray(x, y) : camera_ray(inputs, key);
-            begin_pass(inputs, key, ray, pyramid.get(), owner, pass_domain, corrections, sample, n);
+            begin_pass(inputs, key, ray, owner, pass_domain, corrections, first_vertices, sample,
+                       n);
             if (inputs.render.path.max_bounces == 0) pass_domain.surface.share = 0.0f;
             if (now.surfaces.size() > 0) now.surfaces.at(x, y) = pass_domain.surface;
             const size_t first = candidates.size();
@@ -145,6 +146,8 @@ void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, const DomainSto
         }
     }
     n.candidates += static_cast<int64_t>(candidates.size());
+    const std::vector<Spectrum> shared = light_shared_paths(inputs, tile, pass, first_vertices, n);
+    for (size_t i = 0; i < shared.size(); ++i) samples[i]->indirect += shared[i];
     corrections.trace(*frame.scene, n.light_rays);
     for (size_t i = 0; i < corrections.size(); ++i) {
         FilmSample& sample = *samples[static_cast<size_t>(corrections.owners[i])];

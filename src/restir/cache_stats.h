@@ -22,10 +22,11 @@ struct CacheParts {
     int64_t direction_bytes = 0;
     int64_t environment_bytes = 0;  ///< of the sky's light scattered to this camera
     int64_t cell_bytes = 0;
+    int64_t extinction_bytes = 0;  ///< of mean extinction
 
     [[nodiscard]] int64_t bytes() const
     {
-        return map_bytes + direction_bytes + environment_bytes + cell_bytes;
+        return map_bytes + direction_bytes + environment_bytes + cell_bytes + extinction_bytes;
     }
 };
 

@@ -33,6 +33,7 @@ struct Builder {
     void add_spots() const;
     void add_map(LightCaches::Distant distant) const;
     void add_environment() const;
+    void add_extinction() const;
     void add_local() const;
 };
 
@@ -99,6 +100,18 @@ void Builder::add_environment() const
                             camera_position(scene.camera));
 }
 
+void Builder::add_extinction() const
+{
+    if (!sizes.extinction) return;
+    constexpr float edge_voxels = 4.0f;
+    constexpr size_t most_cells = 150'000;
+    if (same_media) out.extinction = previous->extinction;
+    out.extinction ? ++out.reused : ++out.built;
+    if (out.extinction) return;
+    out.extinction = std::make_shared<CoarseExtinction>(make_coarse_extinction(
+        scene.media, find_smoke_cells(scene.media, edge_voxels, most_cells)));
+}
+
 void Builder::add_local() const
 {
     out.local_lights = local_lights(scene.lights);
@@ -148,6 +161,7 @@ std::shared_ptr<const LightCaches> make_light_caches(
     if (in_view) {
         builder.add_distant();
         builder.add_environment();
+        builder.add_extinction();
     }
     builder.add_local();
     return out;
@@ -163,6 +177,10 @@ CacheParts parts_of(const LightCaches& caches)
         parts.map_bytes += distant.map->stats().bytes;
     }
     if (caches.directions) parts.direction_bytes = caches.directions->stats().bytes;
+    if (caches.extinction) {
+        parts.extinction_bytes =
+            static_cast<int64_t>(caches.extinction->sigma_t.size() * sizeof(float));
+    }
     if (caches.environment) parts.environment_bytes = caches.environment->stats().bytes;
     if (caches.cells) {
         parts.light_cells = static_cast<int64_t>(caches.cells->cell_count());

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "restir/cache_stats.h"
+#include "restir/coarse_extinction.h"
 #include "restir/environment_cache.h"
 #include "restir/environment_spots.h"
 #include "restir/light_cells.h"
@@ -31,6 +32,7 @@ struct LightCaches {
     std::shared_ptr<const EnvironmentParts> parts;  ///< of the scene's environment: not a guess
     std::optional<EnvironmentCache> environment;    ///< of its rest, without spots
     std::optional<LightCells> cells;                ///< of lamps and emissive volumes
+    std::shared_ptr<const CoarseExtinction> extinction;   ///< if asked for
     std::vector<std::optional<EmissiveBricks>> emissive;  ///< of each volume; empty: does not glow
 
     // What they were made from, to tell whether they may stay.
@@ -47,6 +49,7 @@ struct LightCaches {
 struct CacheSizes {
     /// Pixels times passes that will use the caches: few of them are not worth fine caches.
     int64_t pixel_passes = 1'000'000;
+    bool extinction = false;  ///< whether mean extinction is wanted
 };
 
 /// Caches for a frame. Parts whose media and lights are those of `previous` (may be null) are taken

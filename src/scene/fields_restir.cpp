@@ -74,16 +74,11 @@ void describe(FieldVisitor& v, RestirParams& restir)
     visit_choice(
         v,
         {.key = "indirect",
-         .doc = "Light scattered twice and more in media: paths of each pixel's own, or "
-                "pairs of paths from its ray and rays that neighbouring pixels share; auto: "
-                "shared where pixels are closer together than a fifteenth of a mean free path and "
-                "nothing but the camera moves while the shutter is open"},
+         .doc =
+             "Light scattered twice and more in media: by paths of each pixel's own, or by paths "
+             "from which pixels of a tile share all that is behind the first event; auto: "
+             "shared, unless more than the camera moves while the shutter is open"},
         restir.indirect, indirect_names);
-    visit(v,
-          {.key = "indirect_pairs",
-           .doc = "Pairs of paths per pixel and pass, where rays are shared",
-           .range = between(1, 64)},
-          restir.indirect_pairs);
     visit(v,
           {.key = "node_paths",
            .doc =

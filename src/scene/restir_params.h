@@ -31,9 +31,9 @@ enum class ReuseMis {
 
 /// Where light scattered twice and more comes from.
 enum class IndirectLight {
-    Auto,    ///< Shared where that pays (is_worth_sharing) and is possible (can_share_rays)
+    Auto,    ///< Shared where that is possible: only the camera moves while the shutter is open
     Paths,   ///< paths of the pixel's own
-    Shared,  ///< pairs of paths from the pixel's ray and from rays that pixels share
+    Shared,  ///< paths whose later vertices pixels share
 };
 
 /// What the target function knows about shadows.
@@ -108,8 +108,7 @@ struct RestirParams {
                                   ///< distant_rays_of
     int environment_rays = 0;     ///< and into the environment; 0: see environment_rays_of
     IndirectLight indirect = IndirectLight::Auto;
-    int indirect_paths = 8;     ///< paths of two and more events per pass, by the path tracer
-    int indirect_pairs = 4;     ///< pairs per pass, where rays are shared
+    int indirect_paths = 16;    ///< paths of two and more events per pass
     float node_paths = 1.0f;    ///< previews: paths from nodes per pass and pixel of smoke
     float node_spacing = 0.0f;  ///< previews: [m]; 0: by density and pixel size
     bool corrections = true;    ///< false: the closed form alone, a fast biased preview

@@ -1,11 +1,10 @@
-// Light of many events by shared rays and by paths of the pixel's own, against the path tracer.
+// Light of many events by shared paths and by paths of the pixel's own, against the path tracer.
 
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 
 #include "core/parallel.h"
-#include "multiscatter/ray_pyramid.h"
 #include "multiscatter/still_scene.h"
 #include "restir/room_scenes.h"
 #include "restir/runs.h"
@@ -106,16 +105,16 @@ void expect_unbiased(const TestScene& scene, const test::Effort& effort, bool te
     }
 }
 
-class SharedRaysStat : public testing::TestWithParam<TestScene> {};
+class SharedPathsStat : public testing::TestWithParam<TestScene> {};
 
-TEST_P(SharedRaysStat, AgreeWithThePathTracer)
+TEST_P(SharedPathsStat, AgreeWithThePathTracer)
 {
     expect_unbiased(GetParam(), {32, 2, 16}, false);
 }
 
-class SharedRaysLong : public testing::TestWithParam<TestScene> {};
+class SharedPathsLong : public testing::TestWithParam<TestScene> {};
 
-TEST_P(SharedRaysLong, AgreeWithThePathTracerWithinLittle)
+TEST_P(SharedPathsLong, AgreeWithThePathTracerWithinLittle)
 {
     if (!std::getenv("MOTE_LONG_TESTS")) GTEST_SKIP() << "MOTE_LONG_TESTS is not set";
     expect_unbiased(GetParam(), {64, 16, 256}, true);
@@ -128,11 +127,11 @@ std::string test_name(const testing::TestParamInfo<TestScene>& scene)
     return name;
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, SharedRaysStat, testing::ValuesIn(scenes()), test_name);
-INSTANTIATE_TEST_SUITE_P(Scenes, SharedRaysLong, testing::ValuesIn(scenes()), test_name);
+INSTANTIATE_TEST_SUITE_P(Scenes, SharedPathsStat, testing::ValuesIn(scenes()), test_name);
+INSTANTIATE_TEST_SUITE_P(Scenes, SharedPathsLong, testing::ValuesIn(scenes()), test_name);
 
 /// Albedo 1 in an even environment: radiance 1 everywhere, whatever the smoke.
-TEST(SharedRaysStat, WhiteFurnaceStaysWhite)
+TEST(SharedPathsStat, WhiteFurnaceStaysWhite)
 {
     for (const float g : {0.0f, 0.85f}) {
         TestScene furnace{"furnace", test::lit_clumps(8.0f), 100'000};
@@ -164,7 +163,7 @@ TEST(SharedRaysStat, WhiteFurnaceStaysWhite)
     }
 }
 
-TEST(SharedRays, ImagesAreTheSameForAnyThreadCount)
+TEST(SharedPaths, ImagesAreTheSameForAnyThreadCount)
 {
     TestScene scene = with_bounces(test::sun_and_sky(), 8, "");
     use_large_camera(scene.scene);
@@ -190,32 +189,7 @@ TEST(SharedRays, ImagesAreTheSameForAnyThreadCount)
     }
 }
 
-/// Pixels much closer together than free flights are worth sharing; others are not.
-TEST(SharedRays, AreUsedWherePixelsAreClose)
-{
-    TestScene scene = test::sun_and_sky(20.0f);
-    Camera& camera = scene.scene.camera;
-    const auto worth = [&] {
-        const FrameDomain frame = make_frame_domain(
-            test::borrow(scene.scene), make_light_caches(scene.scene, {}, nullptr), {});
-        BinCounts counts;
-        const int x = camera.width / 2;
-        const int y = camera.height / 2;
-        return is_worth_sharing(frame, {x, y, x + 16, y + 16}, counts);
-    };
-    camera.width = 1920;
-    camera.height = 1080;
-    EXPECT_TRUE(worth());
-    camera.width = 32;
-    camera.height = 32;
-    EXPECT_FALSE(worth());
-    camera.width = 1920;
-    camera.height = 1080;
-    scene.scene.lights.emplace_back(SphereLight{Vec3(0.5f), 0.1f, Spectrum(1.0f)});
-    EXPECT_FALSE(worth());
-}
-
-TEST(SharedRays, NeedAShutterDuringWhichOnlyTheCameraMoves)
+TEST(SharedPaths, NeedAShutterDuringWhichOnlyTheCameraMoves)
 {
     Scene scene = test::sun_and_sky().scene;
     EXPECT_TRUE(is_still_but_for_camera(scene));
@@ -226,7 +200,7 @@ TEST(SharedRays, NeedAShutterDuringWhichOnlyTheCameraMoves)
 }
 
 /// The negative control of the comparisons above: the same effort finds out an event too few.
-TEST(SharedRaysStat, OneEventTooFewIsFoundOut)
+TEST(SharedPathsStat, OneEventTooFewIsFoundOut)
 {
     TestScene scene = with_bounces(test::sun_and_sky(), 3, "");
     use_large_camera(scene.scene);

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "reference/scatter_event.h"
+
+namespace mote {
+
+/// Light that arrives at a vertex: the sum over a vertex's arrivals of phase(wo, wi) E is an
+/// unbiased estimate of what it scatters towards wo, whatever wo is.
+struct IncidentSample {
+    Vec3 wi{0.0f};     ///< [unit]
+    Spectrum E{0.0f};  ///< radiance over the density of wi
+};
+
+/// A vertex of paths that are shared.
+struct PathVertex {
+    /// A shadow ray's, that of the ray which goes on, and what is behind that.
+    static constexpr int most_arrivals = 3;
+
+    Vec3 x{0.0f};                  ///< world [m]
+    const Phase* phase = nullptr;  ///< how it scatters; null on surfaces
+    int surface = -1;              ///< into the level's surfaces; -1: in a medium
+    Spectrum weight{1.0f};         ///< of what it scatters: the albedo in a medium, and of first
+                                   ///< vertices their share of the pixel's light
+    Vec3 wo{0.0f};                 ///< with `lobe`, how directions are proposed: of first vertices
+    Phase lobe;                    ///< as it scatters, else for all together that look at it
+    int from = 0;                  ///< the vertex before; of first ones the pixel of the tile
+    /// Of the transmittance to the vertex before: log of assumed over true.
+    float log_excess = 0.0f;
+    IncidentSample arrivals[most_arrivals];
+    int arrival_count = 0;
+
+    void add(const IncidentSample& arrival)
+    {
+        if (arrival.E != Spectrum(0.0f)) arrivals[arrival_count++] = arrival;
+    }
+};
+
+}  // namespace mote

@@ -1,0 +1,39 @@
+#include "multiscatter/shared_paths.h"
+
+#include <algorithm>
+
+#include "multiscatter/gather_light.h"
+#include "multiscatter/send_paths.h"
+#include "volumes/media_extent.h"
+
+namespace mote {
+
+void share_paths(const TraceContext& trace, const CoarseExtinction& extinction,
+                 const PathSharing& sharing, std::vector<PathVertex> first, Rng& rng,
+                 std::span<Spectrum> light, WalkCounts& counts, bool& truncated)
+{
+    // With surfaces every member of a group asks whether it sees what another one has found.
+    const int group_size = trace.scene.surfaces ? sharing.group_size / 4 : sharing.group_size;
+    const SharingContext context{
+        trace,      extinction, static_cast<size_t>(std::max(1, group_size)),
+        cache_time, counts,     truncated};
+    const int last = std::min(sharing.levels, trace.params.max_bounces - 1);
+    std::vector<PathLevel> levels(static_cast<size_t>(last) + 1);
+    levels.front().vertices = std::move(first);
+    for (int l = 0; l < last; ++l) {
+        const auto at = static_cast<size_t>(l);
+        send_paths(context, l + 1, l == 0, levels[at], levels[at + 1], rng);
+    }
+    PathLevel& end = levels.back();
+    for (PathVertex& v : end.vertices) {
+        if (v.surface >= 0) continue;
+        follow_own_path(context, end.event(v, context.time), last + 1, v, rng);
+    }
+    for (int l = last - 1; l >= 0; --l) {
+        const auto at = static_cast<size_t>(l);
+        gather_light(context, levels[at], levels[at + 1], rng,
+                     l == 0 ? light : std::span<Spectrum>());
+    }
+}
+
+}  // namespace mote

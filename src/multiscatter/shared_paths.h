@@ -1,0 +1,35 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/rng.h"
+#include "multiscatter/path_vertex.h"
+#include "reference/trace_context.h"
+#include "restir/coarse_extinction.h"
+#include "volumes/depth_batch.h"
+
+namespace mote {
+
+/// How far paths are shared. Any values are unbiased.
+struct PathSharing {
+    int group_size = 64;  ///< vertices that share their paths; a quarter where there are surfaces
+    int levels = 2;  ///< of vertices, from the first ones on; behind them each has its own path
+};
+
+/// Light scattered twice and more, at the scattering events on the rays of a tile's pixels. Each
+/// vertex sends one path on to a second one; vertices close together form groups, and all of a
+/// group take the light that any of their paths finds, in proportion to how likely they would have
+/// found it themselves. The same once more from the second vertices, and then the path tracer.
+/// Added to light[v.from], times v.weight. Unbiased given the first vertices, whatever they are.
+///
+/// What ReSTIR's spatial reuse of suffixes does with reservoirs (Lin et al. 2021, 2022), for whole
+/// groups at once, with all samples instead of one; Deng et al. 2021 ("Path Graphs") gather alike,
+/// but iterate to a biased fixed point. Precondition: is_still_but_for_camera, as the events'
+/// rays may belong to different times. Cost: for each first vertex a path and about 3 ns for each
+/// of the group. Memory: about 0.6 KB per first vertex of tiles under way.
+void share_paths(const TraceContext& context, const CoarseExtinction& extinction,
+                 const PathSharing& sharing, std::vector<PathVertex> first, Rng& rng,
+                 std::span<Spectrum> light, WalkCounts& counts, bool& truncated);
+
+}  // namespace mote

@@ -1,0 +1,128 @@
+#include "render/indirect_pass.h"
+
+#include "multiscatter/cached_lights.h"
+#include "multiscatter/scatter_along.h"
+#include "multiscatter/shared_paths.h"
+#include "multiscatter/still_scene.h"
+#include "reference/path_tracer.h"
+#include "volumes/media_at.h"
+
+namespace mote {
+namespace {
+
+/// The scattering event in a medium at optical depth tau; its albedo, black if there is none.
+Spectrum medium_event(const Scene& scene, const PixelDomain& domain, float tau, float choice,
+                      ScatterEvent& event)
+{
+    event.x =
+        domain.ray.at(domain.bins.world_t(distance_at(scene.media, domain.ray, domain.bins, tau)));
+    Spectrum albedo(0.0f);
+    float before = 0.0f;
+    for_each_scatterer(scene.media, event.x, event.time,
+                       [&](const Volume& volume, float share, Spectrum own) {
+                           if (!event.phase || choice >= before) {
+                               event.phase = &volume.phase;
+                               albedo = own;
+                           }
+                           before += share;
+                       });
+    return albedo;
+}
+
+TraceContext context_with(const PassInputs& inputs, const CachedGuesses& guesses)
+{
+    return {*inputs.domain.scene, inputs.lights, inputs.render.path, &guesses.shadows,
+            guesses.guide()};
+}
+
+/// How many of `count` paths a ray is worth on which a share `lost` of the light collides: in
+/// proportion to it, but where smoke is thin more, as a few heavy paths would show as spots.
+float paths_worth(float lost, int count)
+{
+    return std::max(lost * static_cast<float>(count), std::sqrt(lost));
+}
+
+PathVertex first_vertex(const ScatterEvent& event, Spectrum weight, int owner)
+{
+    PathVertex v;
+    v.x = event.x;
+    v.phase = event.phase;
+    v.weight = weight;
+    v.wo = event.wo;
+    v.lobe = *event.phase;
+    v.from = owner;
+    return v;
+}
+
+}  // namespace
+
+bool shares_paths(const FrameDomain& frame, const PathTracerParams& path)
+{
+    const RestirParams& params = frame.params;
+    return params.indirect != IndirectLight::Paths && params.corrections && path.max_bounces > 1 &&
+           frame.caches->extinction && is_still_but_for_camera(*frame.scene);
+}
+
+void add_indirect(const PassInputs& inputs, const PassKey& key, const PixelDomain& domain,
+                  const SurfaceVertex* surface, int owner, std::vector<PathVertex>& first,
+                  FilmSample& sample, PassCounts& counts)
+{
+    ++counts.truncated;
+    if (inputs.render.path.max_bounces < 2) return;
+    const Scene& scene = *inputs.domain.scene;
+    if (inputs.nodes) {
+        sample.indirect = scatter_along(*inputs.nodes, scene.media, domain.ray, domain.bins);
+    }
+    const float depth = domain.bins.depth();
+    const float lost = surface ? 1.0f : -std::expm1(-depth);
+    const bool surface_only = inputs.nodes != nullptr;
+    bool truncated = false;
+    if (lost > 0.0f && (surface || !surface_only)) {
+        Rng rng = pass_rng(inputs, key, Stream::Indirect);
+        const float step = 1.0f / paths_worth(lost, inputs.domain.params.indirect_paths);
+        const float weight = lost * step;
+        const CachedGuesses guesses(*inputs.domain.caches);
+        const TraceContext context = context_with(inputs, guesses);
+        for (float u = rng.uniform() * step; u < 1.0f; u += step) {
+            const float tau = -std::log1p(-std::min(u, one_minus_epsilon) * lost);
+            const float choice = rng.uniform();
+            ScatterEvent event{Vec3(0.0f), domain.wo(), domain.ray.time};
+            Spectrum albedo(1.0f);
+            if (surface && !(tau < depth)) {
+                event.x = surface->p;
+                event.surface = surface;
+            } else {
+                if (surface_only) continue;
+                albedo = medium_event(scene, domain, tau, choice, event);
+                if (!event.phase) continue;
+                if (inputs.shares_paths) {
+                    first.push_back(first_vertex(event, weight * albedo, owner));
+                    continue;
+                }
+            }
+            const PathResult path = trace_after_event(context, event, rng);
+            sample.indirect += weight * albedo * path.indirect;
+            sample.surface_indirect += weight * path.surface_indirect;
+            truncated |= path.truncated;
+        }
+    }
+    counts.truncated += truncated ? 0 : -1;
+}
+
+std::vector<Spectrum> light_shared_paths(const PassInputs& inputs, const Tile& tile, uint32_t pass,
+                                         std::vector<PathVertex>& first, PassCounts& counts)
+{
+    if (first.empty()) return {};
+    // Owners count up.
+    std::vector<Spectrum> light(static_cast<size_t>(first.back().from) + 1, Spectrum(0.0f));
+    Rng rng = pass_rng(inputs, {tile.x0, tile.y0, pass}, Stream::SharedPaths);
+    const CachedGuesses guesses(*inputs.domain.caches);
+    bool truncated = false;
+    share_paths(context_with(inputs, guesses), *inputs.domain.caches->extinction, {},
+                std::move(first), rng, light, counts.light_rays, truncated);
+    first.clear();
+    if (truncated) counts.truncated += static_cast<int64_t>(light.size());
+    return light;
+}
+
+}  // namespace mote

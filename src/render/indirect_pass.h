@@ -1,0 +1,31 @@
+#pragma once
+
+#include <vector>
+
+#include "core/parallel.h"
+#include "multiscatter/path_vertex.h"
+#include "render/camera_pass.h"
+
+namespace mote {
+
+/// Whether the frame's pixels share paths of many events.
+[[nodiscard]] bool shares_paths(const FrameDomain& frame, const PathTracerParams& path);
+
+/// Light scattered twice and more along a pixel's ray, by the path tracer from exact first events
+/// on: stratified free flights, each worth the share of light that collides; where a surface ends
+/// the ray, that is all. What media scatter first comes from nodes in previews; where paths are
+/// shared, first events go to `first` under `owner`, for light_shared_paths. Does nothing if light
+/// scatters only once. `surface`: that ends the ray; may be null.
+void add_indirect(const PassInputs& inputs, const PassKey& key, const PixelDomain& domain,
+                  const SurfaceVertex* surface, int owner, std::vector<PathVertex>& first,
+                  FilmSample& sample, PassCounts& counts);
+
+/// What shared paths bring to the pixels of a tile in a pass, by owner; empty if there is nothing
+/// to be lit. `first` is emptied. If max_bounces cuts one path, all pixels with such light count as
+/// truncated.
+[[nodiscard]] std::vector<Spectrum> light_shared_paths(const PassInputs& inputs, const Tile& tile,
+                                                       uint32_t pass,
+                                                       std::vector<PathVertex>& first,
+                                                       PassCounts& counts);
+
+}  // namespace mote

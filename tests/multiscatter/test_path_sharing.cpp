@@ -1,0 +1,220 @@
+// What vertices share, against paths of each vertex's own; and wrong ways to share, which the same
+// test must find out.
+
+#include <gtest/gtest.h>
+
+#include "multiscatter/batches.h"
+#include "multiscatter/gather_light.h"
+#include "multiscatter/send_paths.h"
+#include "multiscatter/shared_paths.h"
+#include "reference/path_tracer.h"
+#include "restir/room_scenes.h"
+#include "restir/scenes.h"
+#include "volumes/media_extent.h"
+
+namespace mote {
+namespace {
+
+constexpr double alarm = 1e-5;  // false alarms, each comparison
+
+enum class Mistake {
+    None,
+    NoJacobian,      ///< distances to the second vertex are left out
+    OnlyWhatLanded,  ///< paths that find nothing do not count
+    NoCheck,         ///< assumed transmittances are taken for true ones
+    StaleLight,      ///< the second vertices' light goes on as it went to the vertex before
+    OneEventTooMany  ///< light that the first vertices' own rays meet counts too
+};
+
+/// A scene, and first vertices in it: some close together, some not.
+struct Sharing {
+    Scene scene;
+    PathTracerParams path;
+    LightSampler lights;
+    CoarseExtinction extinction;
+    std::vector<PathVertex> first;
+
+    Sharing(Scene s, int max_bounces, float spread)
+        : scene(std::move(s)),
+          path{.max_bounces = max_bounces},
+          lights(scene, path),
+          extinction(make_coarse_extinction(scene.media, find_smoke_cells(scene.media, 4.0f, 1000)))
+    {
+        for (uint32_t i = 0; i < 6; ++i) {
+            Rng rng(11, 0, Stream::Test, i, 0);
+            PathVertex v;
+            v.x = Vec3(0.1f, 0.05f, 0.1f) + spread * (rng.uniform3() - Vec3(0.5f));
+            v.wo = glm::normalize(Vec3(0.5f, 0.4f, 3.2f) - v.x);
+            v.phase = &scene.media.volumes[0].phase;
+            v.lobe = *v.phase;
+            v.weight = 0.2f + rng.uniform3();
+            first.push_back(v);
+        }
+    }
+
+    [[nodiscard]] TraceContext trace() const { return {scene, lights, path}; }
+
+    [[nodiscard]] Spectrum alone(Rng& rng) const
+    {
+        Spectrum sum(0.0f);
+        for (const PathVertex& v : first) {
+            const ScatterEvent event{v.x, v.wo, cache_time, v.phase};
+            sum += v.weight * trace_after_event(trace(), event, rng).indirect;
+        }
+        return sum;
+    }
+
+    [[nodiscard]] Spectrum shared(const PathSharing& sharing, Rng& rng) const
+    {
+        std::vector<Spectrum> light(1, Spectrum(0.0f));
+        WalkCounts counts;
+        bool truncated = false;
+        share_paths(trace(), extinction, sharing, first, rng, light, counts, truncated);
+        return light[0];
+    }
+
+    /// One level of it, open to mistakes.
+    [[nodiscard]] Spectrum shared_with(Mistake mistake, Rng& rng) const
+    {
+        WalkCounts counts;
+        bool truncated = false;
+        const TraceContext context = trace();
+        const SharingContext sharing{context, extinction, 64, cache_time, counts, truncated};
+        PathLevel level;
+        PathLevel next;
+        level.vertices = first;
+        send_paths(sharing, 1, mistake != Mistake::OneEventTooMany, level, next, rng);
+        Spectrum extra(0.0f);
+        for (const PathVertex& v : level.vertices) {
+            for (int a = 0; a < v.arrival_count; ++a) {
+                extra += v.weight * eval_phase(*v.phase, v.wo, v.arrivals[a].wi) * v.arrivals[a].E;
+            }
+        }
+        const size_t width = level.kernels.size() / std::max<size_t>(next.vertices.size(), 1);
+        for (size_t j = 0; j < next.vertices.size(); ++j) {
+            PathVertex& y = next.vertices[j];
+            follow_own_path(sharing, next.event(y, cache_time), 2, y, rng);
+            if (mistake == Mistake::NoCheck) y.log_excess = 0.0f;
+            const Vec3 x = first[static_cast<size_t>(y.from)].x;
+            for (size_t i = 0; i < first.size(); ++i) {
+                float& kernel = level.kernels[j * width + static_cast<size_t>(i)];
+                const float d = glm::length(y.x - first[static_cast<size_t>(level.order[i])].x);
+                const float own = glm::length(y.x - x);
+                if (mistake == Mistake::NoJacobian) kernel *= d * d / (own * own);
+                if (mistake == Mistake::OnlyWhatLanded) {
+                    kernel *=
+                        static_cast<float>(first.size()) / static_cast<float>(next.vertices.size());
+                }
+                if (mistake == Mistake::StaleLight) {
+                    kernel *=
+                        phase_pdf(*y.phase, glm::normalize(x - y.x), Vec3(0, 1, 0)) /
+                        phase_pdf(
+                            *y.phase,
+                            glm::normalize(first[static_cast<size_t>(level.order[i])].x - y.x),
+                            Vec3(0, 1, 0));
+                }
+            }
+        }
+        std::vector<Spectrum> light(1, Spectrum(0.0f));
+        gather_light(sharing, level, next, rng, light);
+        return light[0] + extra;
+    }
+};
+
+Scene cloud(float density, float g)
+{
+    Scene scene = test::sun_and_sky(density).scene;
+    scene.media.volumes[0].phase = {g};
+    return scene;
+}
+
+template <class F>
+TestResult compare_with_alone(const Sharing& sharing, const test::Batches& batches, F&& shared)
+{
+    const MeanEstimate expected =
+        test::mean_of(batches, 1, [&](Rng& rng) { return sharing.alone(rng); });
+    const MeanEstimate found = test::mean_of(batches, 2, shared);
+    return welch_test(found, expected);
+}
+
+TEST(PathSharingStat, VerticesGetWhatTheirOwnPathsBring)
+{
+    for (const float spread : {0.05f, 0.7f}) {
+        for (const float g : {-0.4f, 0.0f, 0.85f}) {
+            for (const int levels : {1, 2, 5}) {
+                const Sharing sharing(cloud(8.0f, g), 4, spread);
+                const TestResult result = compare_with_alone(sharing, {32, 60}, [&](Rng& rng) {
+                    return sharing.shared({.group_size = 4, .levels = levels}, rng);
+                });
+                EXPECT_GT(result.p, alarm) << spread << ' ' << g << ' ' << levels;
+            }
+        }
+    }
+}
+
+TEST(PathSharingStat, SurfacesMayBeMetOnTheWay)
+{
+    Scene scene = test::room();
+    const Sharing sharing(std::move(scene), 4, 0.3f);
+    const TestResult result = compare_with_alone(sharing, {32, 100}, [&](Rng& rng) {
+        return sharing.shared({.group_size = 8, .levels = 2}, rng);
+    });
+    EXPECT_GT(result.p, alarm);
+}
+
+TEST(PathSharingStat, WrongWaysAreFoundOut)
+{
+    const Sharing sharing(cloud(8.0f, 0.6f), 3, 0.5f);
+    const test::Batches batches{32, 400};
+    const auto judge = [&](Mistake mistake) {
+        return compare_with_alone(sharing, batches,
+                                  [&](Rng& rng) { return sharing.shared_with(mistake, rng); })
+            .p;
+    };
+    EXPECT_GT(judge(Mistake::None), alarm);
+    EXPECT_LT(judge(Mistake::NoJacobian), alarm);
+    EXPECT_LT(judge(Mistake::OnlyWhatLanded), alarm);
+    EXPECT_LT(judge(Mistake::NoCheck), alarm);
+    EXPECT_LT(judge(Mistake::StaleLight), alarm);
+    EXPECT_LT(judge(Mistake::OneEventTooMany), alarm);
+}
+
+/// Sharing is worth its while: what one vertex gets has less noise than its own path.
+TEST(PathSharingStat, SharedLightHasLessNoise)
+{
+    Sharing sharing(cloud(8.0f, 0.3f), 100, 0.1f);
+    const std::vector<PathVertex> few = sharing.first;
+    while (sharing.first.size() < 48) {
+        PathVertex v = few[sharing.first.size() % few.size()];
+        v.x += 1e-3f * Vec3(static_cast<float>(sharing.first.size()));
+        sharing.first.push_back(v);
+    }
+    RunningStats alone;
+    RunningStats shared;
+    for (uint32_t i = 0; i < 200; ++i) {
+        Rng rng(1, i, Stream::Test, 0, 0);
+        alone.add(static_cast<double>(luminance(sharing.alone(rng))));
+        shared.add(static_cast<double>(luminance(sharing.shared({}, rng))));
+    }
+    // The sum over all 48 has the same number of paths either way; one vertex's light has 48 times
+    // as many. Seen from the sum, sharing must not lose more than a little.
+    EXPECT_LT(estimate_mean(shared).standard_error(), 1.5 * estimate_mean(alone).standard_error());
+}
+
+TEST(PathSharing, NothingComesFromNothing)
+{
+    const Sharing sharing(cloud(8.0f, 0.3f), 4, 0.3f);
+    std::vector<PathVertex> black = sharing.first;
+    for (PathVertex& v : black) v.weight = Spectrum(0.0f);
+    std::vector<Spectrum> light(1, Spectrum(0.0f));
+    WalkCounts counts;
+    bool truncated = false;
+    Rng rng(1, 0, Stream::Test, 0, 0);
+    share_paths(sharing.trace(), sharing.extinction, {}, black, rng, light, counts, truncated);
+    share_paths(sharing.trace(), sharing.extinction, {}, {}, rng, light, counts, truncated);
+    EXPECT_EQ(light[0], Spectrum(0.0f));
+    EXPECT_FALSE(truncated);
+}
+
+}  // namespace
+}  // namespace mote
