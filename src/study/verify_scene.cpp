@@ -12,6 +12,7 @@
 #include "runs/methods.h"
 #include "runs/pilot.h"
 #include "runs/play_frames.h"
+#include "runs/run_error.h"
 
 namespace mote {
 
@@ -22,6 +23,9 @@ constexpr double most_samples = 4096.0;
 /// Of runs whose passes are independent anyway: shorter ones would pay more for keeping the books.
 constexpr double run_seconds = 0.2;
 constexpr double most_passes = 64.0;
+/// Differs from the run's own, so that its camera rays do.
+constexpr uint32_t straight_seed_bits = 0x80000000u;
+constexpr int straight_pilot_passes = 16;
 /// Of the time for the study, at most, for sequences.
 constexpr double temporal_share = 0.1;
 
@@ -54,7 +58,9 @@ struct Setup {
     FramePlan plan;
     FramePlan last_frame;
     PlanCaches caches;
+    PlanCaches straight_caches;
     std::vector<std::string> parts;  ///< layers that show anything
+    StraightLight straight;
     Method tested;
     Method reference;
     int passes = 1;               ///< of the tested method, per frame
@@ -88,10 +94,27 @@ void require_sound(const FrameStats& stats, uint32_t seed)
     }
 }
 
-/// Runs of a method, each of which is the plan's last frame from empty history.
-RunSource source_of(Setup& setup, const Method& method, int samples)
+/// The last frame without events.
+LayeredImage straight_run(Setup& setup, const Method& method, int passes, uint32_t seed)
 {
-    return [&setup, render = settings_of(setup, method, samples),
+    RenderDescription render = settings_of(setup, method, passes);
+    render.path.max_bounces = 0;
+    render.seed = seed;
+    LayeredImage last;
+    play_frames(setup.last_frame, false, render, float_output(setup.parts), setup.hooks.stop,
+                render.estimator == EstimatorKind::Restir ? &setup.straight_caches : nullptr,
+                [&](size_t, const LayeredImage& image, const FrameStats& stats) {
+                    last = image;
+                    require_sound(stats, seed);
+                });
+    return last;
+}
+
+/// Runs of a method, each of which is the plan's last frame from empty history; straight light from
+/// passes of its own, if there are any.
+RunSource source_of(Setup& setup, const Method& method, int samples, int straight_passes = 0)
+{
+    return [&setup, method, straight_passes, render = settings_of(setup, method, samples),
             keeps_history = method.keeps_history](uint32_t seed) {
         RenderDescription seeded = render;
         seeded.seed = seed;
@@ -103,6 +126,11 @@ RunSource source_of(Setup& setup, const Method& method, int samples)
                         setup.truncated_paths += stats.truncated_paths;
                         require_sound(stats, seed);
                     });
+        if (straight_passes > 0) {
+            replace_parts(last,
+                          straight_run(setup, method, straight_passes, seed ^ straight_seed_bits),
+                          setup.straight.parts);
+        }
         return last;
     };
 }
@@ -132,19 +160,27 @@ struct ShortRuns {
     double variance = 0.0;  ///< of a pixel, without the worst ones
 };
 
+/// Of a pixel, by two images, without the share of the pixels where it is largest.
+double variance_between(const LayeredImage& a, const LayeredImage& b, double left_out)
+{
+    PixelStats stats;
+    for (const LayeredImage* image : {&a, &b}) {
+        Buffer2D<Spectrum> color = color_of(*image);
+        replace_non_finite(color);
+        add_run(stats, color);
+    }
+    return trimmed_mean_variance(stats, left_out);
+}
+
 ShortRuns short_runs(const RunSource& source, uint32_t seed)
 {
     ShortRuns runs;
-    PixelStats stats;
     for (uint32_t k = 0; k < 2; ++k) {
         const auto start = std::chrono::steady_clock::now();
         runs.images[k] = source(seed + k);
         runs.seconds = std::max(seconds_since(start), 1e-6);
-        Buffer2D<Spectrum> color = color_of(runs.images[k]);
-        replace_non_finite(color);
-        add_run(stats, color);
     }
-    runs.variance = trimmed_mean_variance(stats, 1e-3);
+    runs.variance = variance_between(runs.images[0], runs.images[1], trimmed_share);
     return runs;
 }
 
@@ -183,6 +219,36 @@ void choose_parts(Setup& setup, std::initializer_list<const ShortRuns*> all_runs
     setup.parts = std::move(parts);
 }
 
+/// Short runs of one estimator, and of its frames without events.
+struct Pilots {
+    const Method& method;
+    int samples;
+    uint32_t seed;
+    ShortRuns runs;
+    ShortRuns straight;
+
+    Pilots(Setup& setup, const Method& m, int n, uint32_t s)
+        : method(m),
+          samples(n),
+          seed(s),
+          runs(short_runs(source_of(setup, m, n), s)),
+          straight(short_runs(
+              [&](uint32_t k) { return straight_run(setup, m, straight_pilot_passes, k); }, s))
+    {
+    }
+    [[nodiscard]] double rest_variance(const std::vector<std::string>& parts, double left_out) const
+    {
+        return variance_between(without_parts(runs.images[0], parts),
+                                without_parts(runs.images[1], parts), left_out);
+    }
+    /// Of one pass.
+    [[nodiscard]] double straight_variance(const std::vector<std::string>& parts) const
+    {
+        return straight_pilot_passes * variance_between(only_parts(straight.images[0], parts),
+                                                        only_parts(straight.images[1], parts), 0.0);
+    }
+};
+
 /// Samples of the reference's runs that make a difference of means known best in a given time: of
 /// var_t + v / s over t + c s, the s of the minimum.
 int reference_samples(const ShortRuns& tested, const ShortRuns& reference)
@@ -190,6 +256,36 @@ int reference_samples(const ShortRuns& tested, const ShortRuns& reference)
     const double ratio =
         reference.variance * tested.seconds / std::max(tested.variance * reference.seconds, 1e-300);
     return static_cast<int>(std::lround(std::clamp(std::sqrt(ratio), 1.0, most_samples)));
+}
+
+/// Takes straight light from passes of its own where it makes most of the tested runs' noise, and
+/// chooses the reference's samples for the rest; returns those.
+int share_out(Setup& setup, Pilots& tested, Pilots& reference)
+{
+    // Of the reference it is true by definition.
+    const std::vector<std::string> parts = straight_parts(
+        tested.runs.images[0], straight_run(setup, tested.method, tested.samples, tested.seed),
+        setup.parts);
+    // One pass shows about the same in both, and either may have missed what is rare.
+    const double pass_variance =
+        std::max(tested.straight_variance(parts), reference.straight_variance(parts));
+    const bool is_worth_it =
+        pass_variance / tested.samples > tested.rest_variance(parts, trimmed_share);
+    if (is_worth_it) {
+        for (Pilots* p : {&tested, &reference}) {
+            p->runs.variance = p->rest_variance(parts, trimmed_share);
+        }
+    }
+    const int samples = reference_samples(tested.runs, reference.runs);
+    if (!is_worth_it) return samples;
+    const double rest = tested.runs.variance + reference.runs.variance / samples;
+    const double seconds = tested.runs.seconds + samples * reference.runs.seconds;
+    const auto passes_of = [&](const Pilots& p) {
+        return best_straight_passes(pass_variance, p.straight.seconds / straight_pilot_passes, rest,
+                                    seconds);
+    };
+    setup.straight = {parts, passes_of(tested), passes_of(reference)};
+    return samples;
 }
 
 int frames_of(const Setup& setup, const Method& method)
@@ -240,7 +336,7 @@ VerifyResult verify_scene(const SceneDescription& scene, const VerifyParams& par
     result.mode = is_animated(scene) ? BenchMode::Moving : BenchMode::Static;
     result.params = params.study;
 
-    Setup setup{scene, params, hooks, {}, {}, {}, part_names, {}, {}, 1, 0};
+    Setup setup{scene, params, hooks, {}, {}, {}, {}, part_names, {}, {}, {}, 1, 0};
     setup.tested = params.method.empty() ? own_method() : find_method(params.method);
     SceneCache scene_cache;
     setup.plan = plan_frames(scene, result.mode, result.frame, {result.warm_up, 1}, scene_cache);
@@ -256,33 +352,36 @@ VerifyResult verify_scene(const SceneDescription& scene, const VerifyParams& par
     if (is_biased) result.params.question.equivalence = true;
     setup.say(fmt::format("short runs of {} and {}", setup.tested.name, setup.reference.name));
     setup.passes = std::max(params.passes, 1);
-    ShortRuns tested = short_runs(source_of(setup, setup.tested, setup.passes), short_run_seed);
     if (params.passes == 0 && !setup.tested.keeps_history) {
-        const double fitting = std::round(run_seconds / tested.seconds);
-        setup.passes = static_cast<int>(std::clamp(fitting, 1.0, most_passes));
-        tested = short_runs(source_of(setup, setup.tested, setup.passes), short_run_seed);
+        const double seconds =
+            short_runs(source_of(setup, setup.tested, 1), short_run_seed).seconds;
+        setup.passes =
+            static_cast<int>(std::clamp(std::round(run_seconds / seconds), 1.0, most_passes));
     }
-    const ShortRuns reference =
-        short_runs(source_of(setup, setup.reference, 1), short_run_seed + 2);
-    if (image_mean(color_of(reference.images[0])) == 0.0 &&
-        image_mean(color_of(tested.images[0])) == 0.0) {
+    Pilots tested(setup, setup.tested, setup.passes, short_run_seed);
+    Pilots reference(setup, setup.reference, 1, short_run_seed + 2);
+    if (image_mean(color_of(reference.runs.images[0])) == 0.0 &&
+        image_mean(color_of(tested.runs.images[0])) == 0.0) {
         throw Error(ExitCode::Input, fmt::format("{}: the picture is black: nothing to compare",
                                                  printable(scene.path, 1000)));
     }
-    choose_parts(setup, {&tested, &reference});
-    const int samples = reference_samples(tested, reference);
+    choose_parts(setup, {&tested.runs, &reference.runs, &tested.straight, &reference.straight});
+    const int samples = share_out(setup, tested, reference);
+    result.straight = setup.straight;
     result.tested = {setup.tested.name, setup.passes, frames_of(setup, setup.tested),
-                     tested.seconds};
+                     tested.runs.seconds};
     result.reference = {setup.reference.name, samples, frames_of(setup, setup.reference),
-                        samples * reference.seconds};
+                        samples * reference.runs.seconds};
 
     const double limit = params.study.seconds;
     if (limit > 0.0) {
         const double share = params.temporal && setup.tested.keeps_history ? temporal_share : 0.0;
         result.params.seconds = std::max((1.0 - share) * limit - seconds_since(start), 1e-3);
     }
-    result.study = run_study(source_of(setup, setup.tested, setup.passes),
-                             source_of(setup, setup.reference, samples), result.params, hooks.say);
+    result.study =
+        run_study(source_of(setup, setup.tested, setup.passes, setup.straight.tested_passes),
+                  source_of(setup, setup.reference, samples, setup.straight.reference_passes),
+                  result.params, hooks.say);
     if (result.study.reference_mean.image_means.mean == 0.0 ||
         result.study.reference_mean.run_count < 2) {
         return result;

@@ -7,6 +7,7 @@
 
 #include "runs/modes.h"
 #include "study/error_figures.h"
+#include "study/straight_light.h"
 #include "study/temporal.h"
 
 namespace mote {
@@ -48,7 +49,8 @@ struct VerifyResult {
     BenchMode mode = BenchMode::Static;
     EstimatorInfo tested;
     EstimatorInfo reference;
-    StudyParams params;  ///< as they were used
+    StraightLight straight;  ///< what came from passes of its own
+    StudyParams params;      ///< as they were used
     Study study;
     int64_t truncated_paths = 0;  ///< ended by the scene's limit of events, both estimators
     ErrorFigures errors;
