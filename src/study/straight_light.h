@@ -13,7 +13,9 @@ namespace mote {
 /// frames of no events, which are cheap: many passes leave little of that noise.
 struct StraightLight {
     std::vector<std::string> parts;  ///< layers; empty: the runs are taken as they are
-    int tested_passes = 0;           ///< of a frame without events, per run
+    bool plays_frames = false;  ///< of runs that keep history: all their frames without events,
+                                ///< as often as gives these passes; else the last one alone
+    int tested_passes = 0;      ///< of frames without events, per run
     int reference_passes = 0;
 };
 
@@ -29,6 +31,9 @@ struct StraightLight {
 void replace_parts(LayeredImage& image, const LayeredImage& source,
                    const std::vector<std::string>& parts);
 
+/// Adds `factor` times the image to a sum of such images, which begins empty.
+void add_image(LayeredImage& sum, const LayeredImage& image, float factor);
+
 /// The parts' sum as R, G and B, or what is left of those without them.
 [[nodiscard]] LayeredImage only_parts(const LayeredImage& image,
                                       const std::vector<std::string>& parts);
@@ -36,7 +41,8 @@ void replace_parts(LayeredImage& image, const LayeredImage& source,
                                          const std::vector<std::string>& parts);
 
 /// Passes without events, of one estimator, for which variance times time is least, where all else
-/// of both takes `rest_seconds` a run and has `rest_variance`: at least 1, at most 1024.
+/// of both takes `rest_seconds` a run and has `rest_variance`. At least 1; at most 1024, and no
+/// more than make runs a few times as long.
 [[nodiscard]] int best_straight_passes(double pass_variance, double pass_seconds,
                                        double rest_variance, double rest_seconds);
 

@@ -59,7 +59,8 @@ TEST(StraightLight, TakesThePassesOfLeastVarianceTimesTime)
     // (rest + pass / n) (run + n t) is least at n = sqrt(pass run / (rest t)).
     EXPECT_EQ(best_straight_passes(9.0, 0.1, 1.0, 10.0), 30);
     EXPECT_EQ(best_straight_passes(1e-6, 1.0, 1.0, 1.0), 1);
-    EXPECT_EQ(best_straight_passes(1.0, 1.0, 0.0, 1.0), 1024);
+    EXPECT_EQ(best_straight_passes(1.0, 1.0, 0.0, 1e9), 1024);
+    EXPECT_EQ(best_straight_passes(1.0, 0.01, 0.0, 1.0), 150);  // runs stay short
 }
 
 /// Lamps smaller than a pixel, in view, beside others that the smoke is lit by.
