@@ -112,9 +112,13 @@ void choose_parts(VerifySetup& setup, std::initializer_list<const ShortRuns*> al
 int share_out(VerifySetup& setup, Pilots& tested, Pilots& reference)
 {
     const std::vector<std::string> parts = parts_without_events(setup, tested);
-    // One pass shows about the same in both, and either may have missed what is rare.
+    // Alike in both but for how evenly their rays fill a pixel; and either may have missed what is
+    // rare.
     const double pass_variance =
         std::max(tested.straight_variance(parts), reference.straight_variance(parts));
+    const auto variance_of = [&](const Pilots& p) {
+        return std::max(p.straight_variance(parts), pass_variance / straight_pilot_passes);
+    };
     const int passes = setup.straight.plays_frames
                            ? tested.samples * static_cast<int>(setup.plan.frames.size())
                            : tested.samples;
@@ -129,8 +133,8 @@ int share_out(VerifySetup& setup, Pilots& tested, Pilots& reference)
     const double rest = tested.runs.variance + reference.runs.variance / samples;
     const double seconds = tested.runs.seconds + samples * reference.runs.seconds;
     const auto passes_of = [&](const Pilots& p) {
-        return best_straight_passes(pass_variance, p.straight.seconds / straight_pilot_passes, rest,
-                                    seconds);
+        return best_straight_passes(variance_of(p), p.straight.seconds / straight_pilot_passes,
+                                    rest, seconds);
     };
     setup.straight.parts = parts;
     setup.straight.tested_passes = passes_of(tested);

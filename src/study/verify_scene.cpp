@@ -18,6 +18,8 @@ namespace mote {
 namespace {
 
 constexpr int default_warm_up = 8;
+/// In motion history is worth little (TemporalParams::cap), so it is what it will be soon.
+constexpr int moving_warm_up = 4;
 /// Of runs whose passes are independent anyway: shorter ones would pay more for keeping the books.
 constexpr double run_seconds = 0.2;
 constexpr double most_passes = 64.0;
@@ -80,7 +82,7 @@ int warm_up_of(const SceneDescription& scene, const VerifyParams& params)
     if (params.warm_up) return *params.warm_up;
     if (!is_animated(scene)) return default_warm_up;
     const int last = params.frame.value_or(scene.last_frame);
-    return std::clamp(last - scene.first_frame, 0, default_warm_up);
+    return std::clamp(last - scene.first_frame, 0, moving_warm_up);
 }
 
 std::optional<TemporalFigures> temporal_of(const VerifySetup& setup, const VerifyResult& result)
