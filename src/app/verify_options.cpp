@@ -57,7 +57,8 @@ void bind_tested(CLI::App& app, VerifyOptions& o)
         ->check(CLI::Range(-1'000'000, 1'000'000))
         ->type_name("N");
     app.add_option("--warm-up", o.warm_up,
-                   "Frames before it, from empty history. Default: 8, or what the animation has")
+                   "Frames before it, from empty history. Default: 8; of what moves 4, or what the "
+                   "animation has")
         ->check(CLI::Range(0, 1000))
         ->type_name("N");
     bind_resolution(app, o.resolution);

@@ -27,7 +27,7 @@ std::string row_line(const MethodResult& row)
     const MethodFigures& f = row.figures;
     const std::string ratio_error = number(100.0 * f.efficiency_error, "{:.0f}");
     return fmt::format(
-        "  {:<22}{:>5}{:>9}{:>8}{:>10}{:>10}{:>10}{:>10}{:>10}{:>6}{:>9} +-{:<6}{:>10}{:>8}{:>9} "
+        "  {:<28}{:>5}{:>9}{:>8}{:>10}{:>10}{:>10}{:>10}{:>10}{:>6}{:>9} +-{:<6}{:>10}{:>8}{:>9} "
         "+-{}%\n",
         row.name + (row.is_biased ? " *" : ""), row.samples, number(f.cpu_us, "{:.3f}"),
         number(f.cache_us, "{:.3f}"), number(f.n_var, "{:.3e}"), number(f.error.mse, "{:.3e}"),
@@ -72,7 +72,7 @@ std::string cost_line(const MethodResult& row)
         row.is_biased ? number(100.0 * std::sqrt(std::max(f.rel_bias_squared, 0.0)), "{:.2f}")
                       : "-";
     std::string line =
-        fmt::format("  {:<22}{:>9}{:>10}{:>7}{:>8}", row.name, number(f.pass_us, "{:.3f}"),
+        fmt::format("  {:<28}{:>9}{:>10}{:>7}{:>8}", row.name, number(f.pass_us, "{:.3f}"),
                     time_to_target(f.time_to_target), number(f.slope, "{:.2f}"), floor);
     for (const WorkField& field : work_fields()) {
         line += fmt::format("{:>12}", number(row.work.*field.value, "{:.3g}"));
@@ -84,7 +84,7 @@ std::string cost_line(const MethodResult& row)
 std::string cost_table(const ModeResult& mode)
 {
     std::string text =
-        fmt::format("\n  {:<22}{:>9}{:>10}{:>7}{:>8}", mode_name(mode.mode) + std::string(", cost"),
+        fmt::format("\n  {:<28}{:>9}{:>10}{:>7}{:>8}", mode_name(mode.mode) + std::string(", cost"),
                     "us/pass", "us to 1%", "slope", "bias %");
     for (const WorkField& field : work_fields()) text += fmt::format("{:>12}", field.name);
     text += fmt::format("{:>11}{:>11}\n", "caches MB", "history MB");
@@ -102,7 +102,7 @@ std::string mode_table(const ModeResult& mode, const ReferenceInfo& reference)
                            mode.rows.front().compared, runs);
     }
     text += fmt::format(
-        "  {:<22}{:>5}{:>9}{:>8}{:>10}{:>10}{:>10}{:>10}{:>10}{:>6}{:>18}{:>10}{:>8}{:>9}\n",
+        "  {:<28}{:>5}{:>9}{:>8}{:>10}{:>10}{:>10}{:>10}{:>10}{:>6}{:>18}{:>10}{:>8}{:>9}\n",
         "method", "spp", "CPU us", "caches", "nVar", "MSE", "trimmed", "relMSE", "trimmed", "worst",
         "bias %", "1/(MSE t)", "x best", "trimmed");
     for (const MethodResult& row : mode.rows) text += row_line(row);

@@ -112,10 +112,10 @@ std::vector<RowChange> find_changes(const BenchReport& before, const BenchReport
 
 std::string changes_table(const std::vector<RowChange>& changes)
 {
-    std::string text = fmt::format("{:<36}{:<8}{:<22}{:<27}{:<27}{}\n", "scene", "mode", "method",
+    std::string text = fmt::format("{:<36}{:<8}{:<28}{:<27}{:<27}{}\n", "scene", "mode", "method",
                                    "MSE x samples", "CPU / samples", "efficiency");
     for (const RowChange& row : changes) {
-        text += fmt::format("{:<36}{:<8}{:<22}{:<27}{:<27}{}\n", printable(row.scene), row.mode,
+        text += fmt::format("{:<36}{:<8}{:<28}{:<27}{:<27}{}\n", printable(row.scene), row.mode,
                             row.method, cell(row.mse), cell(row.cpu), cell(row.efficiency));
     }
     text += fmt::format(

@@ -54,13 +54,13 @@ std::string sweep_text(const SweepResult& sweep)
     const SweepInfo& info = sweep_info(sweep.kind);
     std::string text =
         fmt::format("sweep {}: {} ({})\n", info.name, info.doc, printable(sweep.scene, 1000));
-    text += fmt::format("  {:>12} {:>11} {:<22}{:>9}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n",
+    text += fmt::format("  {:>12} {:>11} {:<28}{:>9}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}\n",
                         info.column, "prepare s", "method", "caches s", "render s", "us/pixel",
                         "wall s", "lookups", "cells", "grids MB", "caches MB");
     for (const SweepPoint& point : sweep.points) {
         for (const SweepRow& row : point.rows) {
             text += fmt::format(
-                "  {:>12g} {:>11.3f} {:<22}{:>9.3f}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3g}{:>10.3g}"
+                "  {:>12g} {:>11.3f} {:<28}{:>9.3f}{:>10.3f}{:>10.3f}{:>10.3f}{:>10.3g}{:>10.3g}"
                 "{:>10.2f}{:>10.2f}\n",
                 point.x, point.prepare_seconds, row.method, row.cache_seconds, row.render_seconds,
                 1e6 * row.render_seconds / pixels(point), row.wall_seconds,

@@ -114,7 +114,8 @@ Spectrum seen_light(const TraceContext& context, const LightRay& light_ray,
                 weight =
                     seen_weight(context.params, light_ray.pdf_dir, pmf * pdf_dir, ratio * pdf_dir);
             }
-            if (weight > 0.0f) sum += hit->Le * (weight * visibility(hit->distance));
+            if (weight > 0.0f)
+                sum += hit->Le * (weight * visibility(clear_distance(hit->distance)));
         });
     }
     const auto& environment = context.scene.environment;

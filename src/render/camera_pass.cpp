@@ -47,7 +47,7 @@ Spectrum seen_background(const PassInputs& inputs, const PixelDomain& domain, fl
     inputs.domain.lamp_surfaces->for_each_on_ray(domain.ray, [&](int index) {
         const Light& light = scene.lights[static_cast<size_t>(index)];
         const std::optional<LightHit> hit = hit_light(light, domain.ray.o, domain.ray.d);
-        if (hit && hit->distance <= domain.t_end()) {
+        if (hit && clear_distance(hit->distance) <= domain.t_end()) {
             sum += transmittance_to(inputs.domain, domain, hit->distance) * hit->Le;
         }
     });

@@ -64,7 +64,18 @@ std::vector<Method> restir_methods()
         [](RestirParams& r) { r = make_restir_params(RestirPreset::BiasedConstantMis); });
     blind.is_worthwhile =
         constant.is_worthwhile = [](const SceneTraits& traits) { return traits.local_lights; };
-    for (Method* method : {&preview, &blind, &constant}) {
+    Method reused = restir_method(
+        "restir-reused-visibility",
+        "preset biased-reused-visibility: surfaces' samples keep the "
+        "shadow of where they were drawn; biased",
+        [](RestirParams& r) { r = make_restir_params(RestirPreset::BiasedReusedVisibility); });
+    Method weighted = restir_method(
+        "restir-weighted-visibility",
+        "preset biased-weighted-visibility: surfaces average shadows over time; biased",
+        [](RestirParams& r) { r = make_restir_params(RestirPreset::BiasedWeightedVisibility); });
+    reused.is_worthwhile =
+        weighted.is_worthwhile = [](const SceneTraits& traits) { return traits.surfaces; };
+    for (Method* method : {&preview, &blind, &constant, &reused, &weighted}) {
         method->is_biased = true;
         table.push_back(std::move(*method));
     }

@@ -36,7 +36,7 @@ std::optional<LightSample> sample(const DistantLight& light, Vec3 /*x*/, Vec2 /*
 float one_minus_cos(const SphereLight& light, float distance2)
 {
     const float sin2 = sqr(light.radius) / distance2;
-    return sin2 / (1.0f + std::sqrt(std::max(0.0f, 1.0f - sin2)));
+    return sin2 / (1.0f + std::sqrt(1.0f - sin2));
 }
 
 /// Uniform over the cone of directions that meet the sphere.
@@ -49,7 +49,7 @@ std::optional<LightSample> sample(const SphereLight& light, Vec3 x, Vec2 u)
     const float cone = one_minus_cos(light, distance2);
     const float one_minus_cos_theta = u.x * cone;
     const float cos_theta = 1.0f - one_minus_cos_theta;
-    const float sin2 = std::max(0.0f, one_minus_cos_theta * (2.0f - one_minus_cos_theta));
+    const float sin2 = one_minus_cos_theta * (2.0f - one_minus_cos_theta);
     const float sin_theta = std::sqrt(sin2);
     const float phi = 2.0f * pi * u.y;
     const float distance = std::sqrt(distance2);
@@ -146,7 +146,7 @@ std::optional<LightHit> hit(const QuadLight& light, Vec3 x, Vec3 wi)
     const float slope = glm::dot(normal, wi);
     if (!(light.two_sided ? slope != 0.0f : slope < 0.0f)) return std::nullopt;
     const float distance = glm::dot(light.corner - x, normal) / slope;
-    if (!(distance > 0.0f) || !std::isfinite(distance)) return std::nullopt;
+    if (!(distance > 0.0f)) return std::nullopt;
     const Vec2 u = place_on(light, x + distance * wi);
     if (!(u.x >= 0.0f && u.x <= 1.0f && u.y >= 0.0f && u.y <= 1.0f)) return std::nullopt;
     return LightHit{distance, light.radiance};

@@ -45,6 +45,15 @@ std::string estimator_line(const char* role, const EstimatorInfo& info, int runs
                        info.frames == 1 ? "" : "s", runs);
 }
 
+std::string straight_line(const StraightLight& straight)
+{
+    if (straight.parts.empty()) return "";
+    return fmt::format(
+        "{} of {} passes without events a run, {} of the reference's: rays that just meet lamps "
+        "made most of the noise, which the figures of error leave out\n",
+        fmt::join(straight.parts, ", "), straight.tested_passes, straight.reference_passes);
+}
+
 std::string error_lines(const ErrorFigures& e)
 {
     std::string text = fmt::format(
@@ -133,6 +142,7 @@ std::string verify_text(const VerifyReport& report)
                         r.tested.frames > 1 ? "" : " (which change nothing: not played)");
     text += estimator_line("tested", r.tested, look.runs);
     text += estimator_line("reference", r.reference, look.runs);
+    text += straight_line(r.straight);
     text += fmt::format(
         "{} by {} look{} in {:.0f} s, alpha {:.2g} in all, {:.2g} for the last; power {:.0f} %, "
         "budget {:.3g} %\n\n",

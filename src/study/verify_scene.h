@@ -7,6 +7,7 @@
 
 #include "runs/modes.h"
 #include "study/error_figures.h"
+#include "study/straight_light.h"
 #include "study/temporal.h"
 
 namespace mote {
@@ -16,7 +17,7 @@ struct VerifyParams {
     std::string method;     ///< of all_methods(); empty: estimator restir with the scene's settings
     std::string reference;  ///< the same; empty: the path tracer that suits the scene
     std::optional<int> frame;    ///< the frame compared; empty: the scene's first after warm-up
-    std::optional<int> warm_up;  ///< frames before it; empty: 8, or as many as the animation has
+    std::optional<int> warm_up;  ///< frames before it; empty: 8, in motion 4 or what there is
     /// Of the tested estimator, per frame; 0: one, but where frames do not depend on those before
     /// as many as take about a fifth of a second.
     int passes = 0;
@@ -48,7 +49,8 @@ struct VerifyResult {
     BenchMode mode = BenchMode::Static;
     EstimatorInfo tested;
     EstimatorInfo reference;
-    StudyParams params;  ///< as they were used
+    StraightLight straight;  ///< what came from passes of its own
+    StudyParams params;      ///< as they were used
     Study study;
     int64_t truncated_paths = 0;  ///< ended by the scene's limit of events, both estimators
     ErrorFigures errors;

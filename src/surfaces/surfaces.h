@@ -64,11 +64,18 @@ struct SurfaceHit {
 /// Whether any triangle lies within the range, where it is not cut out.
 [[nodiscard]] bool is_occluded(const Surfaces& surfaces, const Ray& ray, Interval range);
 
-/// Whether a surface lies between the ray's origin and the point `distance` along it (infinity: all
-/// the way), where a light is that may lie on a surface itself: distances are rounded.
+/// How far a light at this distance along a ray is from being hidden [m]: it may lie in a surface
+/// itself, and distances to both are rounded, the more so the flatter the ray.
+[[nodiscard]] inline float clear_distance(float distance)
+{
+    return distance * (1.0f - 0x1p-19f);
+}
+
+/// Whether a surface lies between the ray's origin and the light at `distance` along it (infinity:
+/// all the way).
 [[nodiscard]] inline bool is_shadowed(const Surfaces& surfaces, const Ray& ray, float distance)
 {
-    return is_occluded(surfaces, ray, {0.0f, distance * (1.0f - 0x1p-21f)});
+    return is_occluded(surfaces, ray, {0.0f, clear_distance(distance)});
 }
 
 /// All about a hit at ray time `time`. The point comes from the triangle's corners rather than from

@@ -58,6 +58,9 @@ TEST(Methods, TheLightsOfTheSceneDecideWhatIsMeasured)
     EXPECT_FALSE(is_measured("restir-both", {false, false, true}));
     EXPECT_TRUE(is_measured("restir-both", {false, false, true, true}));
     EXPECT_FALSE(is_measured("restir-constant-mis", {false, false, true}));
+    EXPECT_TRUE(is_measured("restir-reused-visibility", {false, false, true, true}));
+    EXPECT_TRUE(is_measured("restir-weighted-visibility", {false, false, true, true}));
+    EXPECT_FALSE(is_measured("restir-reused-visibility", {true, true, true, false}));
     EXPECT_TRUE(is_measured("march", {false, true, true, false, false, 2}));
     EXPECT_FALSE(is_measured("march", {false, true, true, false, false, 1000}));
     EXPECT_FALSE(is_measured("march", {false, true, true, true, false, 2}));

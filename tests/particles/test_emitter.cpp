@@ -104,6 +104,24 @@ TEST(Emitter, AFullFrameHoldsExactlyTheCount)
     }
 }
 
+/// Nothing flies, and no age or place is lost in a division by a speed.
+TEST(Emitter, NoSpeedIsNoReasonToBeNowhere)
+{
+    for (const EmitterKind kind : all_kinds) {
+        for (const float turbulence : {0.0f, 0.5f}) {
+            EmitterParams params = emitter(kind, 500);
+            params.speed = 0.0f;
+            params.turbulence = turbulence;
+            const ParticleSet set = emit_particles(params, 1.3);
+            ASSERT_GT(set.size(), 0u);
+            for (size_t i = 0; i < set.size(); ++i) {
+                EXPECT_TRUE(is_finite(set.position[i]) && is_finite(set.velocity[i]));
+                EXPECT_TRUE(std::isfinite(set.age[i]) && std::isfinite(set.radius[i]));
+            }
+        }
+    }
+}
+
 TEST(Emitter, PlumeFillsOverALifetimeAndIdsRise)
 {
     const EmitterParams params = emitter(EmitterKind::Plume, 1000);  // 250 births a second

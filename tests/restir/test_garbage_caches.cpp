@@ -80,6 +80,12 @@ float spikes(size_t entry)
     return entry % 37 == 0 ? 1e6f : 1e-6f;
 }
 
+/// Sums of these are infinite.
+float huge(size_t entry)
+{
+    return entry % 2 == 0 ? 3e38f : 0.0f;
+}
+
 struct Garbage {
     const char* name;
     LightCaches caches;
@@ -102,6 +108,7 @@ std::vector<Garbage> garbage(const Scene& scene)
     return {{"another medium", stale_caches(scene, 2.0f)},
             {"nothing in the way, spikes", with_cells(bright, spikes)},
             {"black, zeros", with_cells(dark, zero)},
+            {"black, overflow", with_cells(dark, huge)},
             {"thick medium, noise", with_cells(stale_caches(scene, 50.0f), noise)}};
 }
 

@@ -35,9 +35,8 @@ std::vector<Scene> numbered(std::vector<Scene> frames)
 
 /// Plays the frames in every way; the last frame must be the path tracer's. The false-alarm rate
 /// of one way is 1e-5.
-void expect_right_end(const std::vector<Scene>& frames, const std::string& what)
+void expect_right_end(const std::vector<Scene>& frames, const std::string& what, int runs = 12)
 {
-    constexpr int runs = 12;
     const TileStats reference =
         test::last_frames({&frames.back(), 1}, test::path_way(1, 150), runs, 100'000, what);
     for (const test::Way& way : ways_with_history()) {
@@ -61,7 +60,11 @@ TEST(StressCutsStat, EmptyFramesBetweenFullOnes)
                      "empty frames");
 }
 
-TEST(StressCutsStat, ACutEveryFrame)
+/// Enough to see what HistoryKeptAcrossACutIsFound must find.
+constexpr int cut_runs = 24;
+
+/// The camera jumps around the smoke.
+std::vector<Scene> cuts()
 {
     std::vector<Scene> frames;
     for (int i = 0; i < 6; ++i) {
@@ -70,7 +73,53 @@ TEST(StressCutsStat, ACutEveryFrame)
         scene.camera = test::small_camera(3.0f * Vec3(std::sin(angle), 0.2f, std::cos(angle)));
         frames.push_back(scene);
     }
-    expect_right_end(numbered(frames), "a cut every frame");
+    return numbered(frames);
+}
+
+TEST(StressCutsStat, ACutEveryFrame)
+{
+    expect_right_end(cuts(), "a cut every frame", cut_runs);
+}
+
+/// The last frame by a renderer that does not notice cuts: it takes the samples of the frame before
+/// for samples of this one.
+LayeredImage play_over_cuts(const std::vector<Scene>& frames, test::Way way, uint32_t seed)
+{
+    OutputDescription output;
+    output.aovs = test::part_names;
+    output.color_type = PixelType::Float;
+    way.render.width = frames[0].camera.width;
+    way.render.height = frames[0].camera.height;
+    way.render.seed = seed;
+    LayeredImage image;
+    FrameHistory history;
+    for (const Scene& scene : frames) {
+        FrameStats stats;
+        if (!history.impl().before.empty()) {
+            FrameHistory here;
+            (void)render_frame(scene, way.render, output, here, nullptr, stats);
+            here.impl().before.reservoirs = history.impl().before.reservoirs;
+            history.impl() = std::move(here.impl());
+        }
+        image = render_frame(scene, way.render, output, history, nullptr, stats);
+    }
+    return image;
+}
+
+/// What ACutEveryFrame must reject, at the same effort, in the ways where history weighs most: half
+/// of the light is missing.
+TEST(StressCutsStat, HistoryKeptAcrossACutIsFound)
+{
+    const std::vector<Scene> frames = cuts();
+    const TileStats reference = test::last_frames({&frames.back(), 1}, test::path_way(1, 150),
+                                                  cut_runs, 100'000, "reference");
+    for (const test::Way& way : ways_with_history()) {
+        if (way.name != "both, world" && way.name != "textbook") continue;
+        const TileStats kept = test::collect(
+            cut_runs, 1, [&](uint32_t seed) { return play_over_cuts(frames, way, seed); });
+        const RunComparison comparison = compare_runs(kept, reference);
+        EXPECT_LT(comparison.p, test::alarm) << test::summary(way.name, comparison);
+    }
 }
 
 TEST(StressCutsStat, DensitiesThatJumpAMillionfold)
