@@ -16,7 +16,17 @@
 namespace mote {
 
 /// Pairs of a pixel's PassSequence.
-enum class NumberPair : uint32_t { Film, Lens, Time, Distances, Directions, Choices, Flight };
+enum class NumberPair : uint32_t {
+    Film,
+    Lens,
+    Time,
+    Distances,
+    Directions,
+    Choices,
+    Flight,
+    Guesses,
+    Counts
+};
 
 /// What every pass of the ReSTIR estimator reads.
 struct PassInputs {
@@ -38,6 +48,7 @@ struct PassKey {
 struct PassCounts {
     BinCounts bins;
     WalkCounts light_rays;
+    WalkCounts guesses;  ///< rays towards lights through coarse media
     ReuseCounts reuse;
     int64_t candidates = 0;          ///< in media and on surfaces
     int64_t surfaces = 0;            ///< passes that sampled a surface's light
@@ -65,7 +76,7 @@ struct PassDomain {
 /// `pyramid`: the tile's shared rays, lit for this pass; null: paths of many events are the pixel's
 /// own.
 void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray,
-                const RayPyramid* pyramid, int owner, PassDomain& domain, LightRays& rays,
+                const RayPyramid* pyramid, int owner, PassDomain& domain, TileRays& rays,
                 FilmSample& sample, PassCounts& counts);
 
 /// The rays that a tile's pixels share for light of many events; null where they have none.
