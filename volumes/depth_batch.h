@@ -22,6 +22,14 @@ struct WalkCounts {
     uint64_t bricks = 0;          ///< pieces of rays through bricks
     uint64_t uniform_bricks = 0;  ///< those among them of one value: closed form, no cells
     uint64_t cells = 0;           ///< pieces integrated in closed form
+
+    void add(const WalkCounts& other)
+    {
+        rays += other.rays;
+        bricks += other.bricks;
+        uniform_bricks += other.uniform_bricks;
+        cells += other.cells;
+    }
 };
 
 /// tau[i] = optical depth of queries[i] through all media, exact up to float rounding; where it

@@ -41,6 +41,7 @@ enum class Stream : uint32_t {
     ScatterNodes,
     Indirect,
     SharedPaths,
+    LightGuess,
 };
 
 /// Counter-based generator: the n-th number of a stream is a pure function of its key and n, so

@@ -110,10 +110,8 @@ void PassCounts::add(const PassCounts& other)
     bins.uniform_bricks += other.bins.uniform_bricks;
     bins.cells += other.bins.cells;
     bins.bins += other.bins.bins;
-    light_rays.rays += other.light_rays.rays;
-    light_rays.bricks += other.light_rays.bricks;
-    light_rays.uniform_bricks += other.light_rays.uniform_bricks;
-    light_rays.cells += other.light_rays.cells;
+    light_rays.add(other.light_rays);
+    guesses.add(other.guesses);
     reuse.histories += other.reuse.histories;
     reuse.neighbours += other.reuse.neighbours;
     candidates += other.candidates;
@@ -152,7 +150,7 @@ std::optional<FilmSample> uniform_tile(const PassInputs& inputs, const Tile& til
 }
 
 void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray, int owner,
-                PassDomain& domain, LightRays& rays, std::vector<PathVertex>& first,
+                PassDomain& domain, TileRays& rays, std::vector<PathVertex>& first,
                 FilmSample& sample, PassCounts& counts)
 {
     const FrameDomain& frame = inputs.domain;
@@ -185,9 +183,10 @@ void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray, in
     }
     const int max_bounces = inputs.render.path.max_bounces;
     if (is_empty || max_bounces == 0) return;
-    const CorrectionPairs pairs{static_cast<uint32_t>(NumberPair::Distances),
-                                static_cast<uint32_t>(NumberPair::Directions),
-                                static_cast<uint32_t>(NumberPair::Choices)};
+    const CorrectionPairs pairs{
+        static_cast<uint32_t>(NumberPair::Distances), static_cast<uint32_t>(NumberPair::Directions),
+        static_cast<uint32_t>(NumberPair::Choices), static_cast<uint32_t>(NumberPair::Guesses),
+        static_cast<uint32_t>(NumberPair::Counts)};
     if (frame.params.control_variate) {
         Rng rng = pass_rng(inputs, key, Stream::Path);
         sample.direct =

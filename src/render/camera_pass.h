@@ -16,7 +16,17 @@
 namespace mote {
 
 /// Pairs of a pixel's PassSequence.
-enum class NumberPair : uint32_t { Film, Lens, Time, Distances, Directions, Choices, Flight };
+enum class NumberPair : uint32_t {
+    Film,
+    Lens,
+    Time,
+    Distances,
+    Directions,
+    Choices,
+    Flight,
+    Guesses,
+    Counts
+};
 
 /// What every pass of the ReSTIR estimator reads.
 struct PassInputs {
@@ -39,6 +49,7 @@ struct PassKey {
 struct PassCounts {
     BinCounts bins;
     WalkCounts light_rays;
+    WalkCounts guesses;  ///< rays towards lights through coarse media
     ReuseCounts reuse;
     int64_t candidates = 0;          ///< in media and on surfaces
     int64_t surfaces = 0;            ///< passes that sampled a surface's light
@@ -66,7 +77,7 @@ struct PassDomain {
 /// Where paths are shared (shares_paths), events in media are put to `first` for
 /// light_shared_paths.
 void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray, int owner,
-                PassDomain& domain, LightRays& rays, std::vector<PathVertex>& first,
+                PassDomain& domain, TileRays& rays, std::vector<PathVertex>& first,
                 FilmSample& sample, PassCounts& counts);
 
 /// What every pass of every pixel of a tile shows, if that is one and the same: a constant

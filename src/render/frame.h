@@ -31,6 +31,9 @@ struct FrameStats {
     int64_t missed_rays = 0;         ///< camera rays that met no medium's bounds: nothing is walked
     int64_t light_rays = 0;          ///< traced exactly towards lights
     int64_t cells = 0;               ///< walked by both
+    int64_t light_ray_cells = 0;     ///< those of them by rays towards lights
+    int64_t coarse_rays = 0;         ///< towards lights, through coarse media
+    int64_t coarse_ray_cells = 0;    ///< walked by these
     int64_t uniform_bricks = 0;      ///< crossed by both in closed form, without cells
     int64_t candidates = 0;
     int64_t surfaces = 0;            ///< passes of pixels that sampled a surface's light

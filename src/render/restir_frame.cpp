@@ -10,13 +10,14 @@
 #include "render/surface_pass.h"
 #include "restir/cache_stats.h"
 #include "restir/candidates.h"
+#include "restir/correction_need.h"
 
 namespace mote {
 namespace {
 
 /// What one tile works with; allocated once per tile, reused over its passes.
 struct TileScratch {
-    LightRays rays;
+    TileRays rays;
     LightRays surface_rays;
     std::vector<Candidate> candidates;
     SurfaceChoice choice;
@@ -59,20 +60,20 @@ void trace_tile_pass(const PassInputs& inputs, const Tile& tile, uint32_t pass,
             sample.work.x += static_cast<float>(scratch.candidates.size());
             for (const Candidate& c : scratch.candidates) {
                 const Spectrum weight = c.f / c.density;
-                scratch.rays.add(owner, c.x, c.arrival.wi, c.arrival.distance, domain.ray.time,
-                                 weight, depth_that_matters(weight, luminance(sample.L())));
+                scratch.rays.exact.add(owner, c.x, c.arrival.wi, c.arrival.distance,
+                                       domain.ray.time, weight,
+                                       depth_that_matters(weight, luminance(sample.L())));
             }
         }
     }
     const std::vector<Spectrum> shared =
         light_shared_paths(inputs, tile, pass, scratch.first, counts);
     for (size_t i = 0; i < shared.size(); ++i) scratch.samples[i].indirect += shared[i];
-    scratch.rays.trace(*frame.scene, counts.light_rays);
-    for (size_t i = 0; i < scratch.rays.size(); ++i) {
-        FilmSample& sample = scratch.samples[static_cast<size_t>(scratch.rays.owners[i])];
-        sample.direct += scratch.rays.value(i);
+    scratch.rays.trace(frame, counts.guesses, counts.light_rays, [&](int of, Spectrum value) {
+        FilmSample& sample = scratch.samples[static_cast<size_t>(of)];
+        sample.direct += value;
         sample.exact_rays += 1.0f;
-    }
+    });
     scratch.surface_rays.trace(*frame.scene, counts.light_rays);
     for (size_t i = 0; i < scratch.surface_rays.size(); ++i) {
         FilmSample& sample = scratch.samples[static_cast<size_t>(scratch.surface_rays.owners[i])];
@@ -113,9 +114,10 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
     history.caches = make_light_caches(scene, {pixel_passes(render), may_share}, history.caches);
     stats.cache_cpu_seconds = process_cpu_seconds() - cpu_start;
     const bool keeps_history = uses_history(render);
-    const FrameDomain domain = make_frame_domain(
+    FrameDomain domain = make_frame_domain(
         share(scene, keeps_history), history.caches,
         settle_corrections(render.restir, render.path.max_bounces), &history.last);
+    domain.mean_known = mean_known_light(domain);
     std::optional<Change> change;
     if (history.last.scene) change = change_between(history.last, domain);
     const ReusePlan plan = plan_reuse(domain, render, change);
@@ -154,6 +156,9 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
     stats.missed_rays = counts.bins.misses;
     stats.light_rays = static_cast<int64_t>(counts.light_rays.rays);
     stats.cells = counts.bins.cells + static_cast<int64_t>(counts.light_rays.cells);
+    stats.light_ray_cells = static_cast<int64_t>(counts.light_rays.cells);
+    stats.coarse_rays = static_cast<int64_t>(counts.guesses.rays);
+    stats.coarse_ray_cells = static_cast<int64_t>(counts.guesses.cells);
     stats.uniform_bricks =
         counts.bins.uniform_bricks + static_cast<int64_t>(counts.light_rays.uniform_bricks);
     stats.candidates = counts.candidates;

@@ -97,7 +97,7 @@ void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, const DomainSto
                                 FinishedPass& now, PassCounts& n)
 {
     const FrameDomain& frame = inputs.domain;
-    LightRays corrections;
+    TileRays corrections;
     LightRays shadows;
     std::vector<Candidate> candidates;
     std::vector<CandidateRange> ranges;
@@ -148,12 +148,11 @@ void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, const DomainSto
     n.candidates += static_cast<int64_t>(candidates.size());
     const std::vector<Spectrum> shared = light_shared_paths(inputs, tile, pass, first_vertices, n);
     for (size_t i = 0; i < shared.size(); ++i) samples[i]->indirect += shared[i];
-    corrections.trace(*frame.scene, n.light_rays);
-    for (size_t i = 0; i < corrections.size(); ++i) {
-        FilmSample& sample = *samples[static_cast<size_t>(corrections.owners[i])];
-        sample.direct += corrections.value(i);
+    corrections.trace(frame, n.guesses, n.light_rays, [&](int of, Spectrum value) {
+        FilmSample& sample = *samples[static_cast<size_t>(of)];
+        sample.direct += value;
         sample.exact_rays += 1.0f;
-    }
+    });
     shadows.trace(*frame.scene, n.light_rays);
     for (size_t i = 0; i < shadows.size(); ++i) {
         candidates[static_cast<size_t>(shadows.owners[i])].f = shadows.value(i);

@@ -2,7 +2,7 @@
 
 #include "core/sobol.h"
 #include "restir/frame_domain.h"
-#include "restir/light_rays.h"
+#include "restir/guessed_rays.h"
 #include "volumes/ray_bins.h"
 
 namespace mote {
@@ -13,6 +13,42 @@ struct CorrectionPairs {
     uint32_t distances = 0;
     uint32_t directions = 0;
     uint32_t choices = 0;
+    uint32_t guesses = 0;
+    uint32_t counts = 0;
+};
+
+/// What the caches think is scattered towards the camera, by kind of light.
+struct KnownLight {
+    Spectrum distant{0.0f};
+    Spectrum environment{0.0f};
+};
+
+/// Of one ray, in closed form.
+[[nodiscard]] KnownLight known_infinite_lights(const FrameDomain& frame, const Ray& ray,
+                                               const RayBins& bins);
+
+/// Rays of a tile's pixels towards lights.
+struct TileRays {
+    LightRays exact;
+    GuessedRays guessed;
+
+    void clear()
+    {
+        exact.clear();
+        guessed.clear();
+    }
+    /// Traces them and calls bring(owner, value) for each.
+    template <class Bring>
+    void trace(const FrameDomain& frame, WalkCounts& guesses, WalkCounts& counts, Bring&& bring)
+    {
+        exact.trace(*frame.scene, counts);
+        for (size_t i = 0; i < exact.size(); ++i) bring(exact.owners[i], exact.value(i));
+        if (guessed.size() == 0) return;
+        guessed.trace(*frame.scene, *frame.caches->guess, guesses, counts);
+        for (size_t i = 0; i < guessed.size(); ++i) {
+            bring(guessed.guesses.owners[i], guessed.values[i]);
+        }
+    }
 };
 
 /// Single scattering of lights at infinity (distant lights and the environment) towards the camera.
@@ -26,6 +62,6 @@ struct CorrectionPairs {
 [[nodiscard]] Spectrum scatter_infinite_lights(const FrameDomain& frame, const Ray& ray,
                                                const RayBins& bins, const PassSequence& numbers,
                                                const CorrectionPairs& pairs, Rng& rng, int owner,
-                                               LightRays& rays);
+                                               TileRays& rays);
 
 }  // namespace mote

@@ -30,22 +30,24 @@ DirectionTransmittance::DirectionTransmittance(const Media& media,
         if (hats_.opposite(k) < 0 || k < hats_.opposite(k)) walked.push_back(k);
     }
     // Detail below half the distance between rays would only alias.
-    const Media coarse = coarse_media(media, 0.5f * map_params.spacing);
+    walked_voxel_ = 0.5f * map_params.spacing;
+    walked_media_ = coarse_media(media, walked_voxel_);
     constexpr size_t batch = 12;  // maps alive at once
     for (size_t first = 0; first < walked.size(); first += batch) {
         const size_t count = std::min(batch, walked.size() - first);
         std::vector<TransmittanceMap> maps;
         for (size_t i = 0; i < count; ++i) {
-            maps.emplace_back(coarse, hats_.centre(walked[first + i]), map_params);
+            maps.emplace_back(walked_media_, hats_.centre(walked[first + i]), map_params);
             stats_.rays += maps.back().stats().rays;
         }
+        // One map after the other: the part of it that these nodes see stays in the cache.
         parallel_for(slots, 256, [&](size_t begin, size_t end) {
-            for (size_t slot = std::max<size_t>(begin, 1); slot < end; ++slot) {
-                const Vec3 x = lattice_.position(lattice_.nodes[slot]);
-                float* row = rows_.data() + slot * row_size_;
-                for (size_t i = 0; i < count; ++i) {
-                    const int k = walked[first + i];
-                    const int opposite = hats_.opposite(k);
+            for (size_t i = 0; i < count; ++i) {
+                const int k = walked[first + i];
+                const int opposite = hats_.opposite(k);
+                for (size_t slot = std::max<size_t>(begin, 1); slot < end; ++slot) {
+                    const Vec3 x = lattice_.position(lattice_.nodes[slot]);
+                    float* row = rows_.data() + slot * row_size_;
                     row[k] = maps[i].transmittance(x);
                     if (opposite >= 0) row[opposite] = std::exp(-maps[i].depth_behind(x));
                 }

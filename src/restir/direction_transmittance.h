@@ -32,6 +32,11 @@ class DirectionTransmittance {
     /// from smoke. Floor it before using it in a target.
     [[nodiscard]] float transmittance(Vec3 x, Vec3 wi) const;
 
+    /// The media that were walked, which share the grids of those given where these are coarse
+    /// enough, and the largest voxel that they may have [m].
+    [[nodiscard]] const Media& walked_media() const { return walked_media_; }
+    [[nodiscard]] float walked_voxel() const { return walked_voxel_; }
+
     [[nodiscard]] const DirectionHats& hats() const { return hats_; }
     [[nodiscard]] const SmokeLattice& lattice() const { return lattice_; }
     /// Transmittances of one slot of the lattice, row_size() of them: first hats().count() values,
@@ -49,6 +54,8 @@ class DirectionTransmittance {
     SmokeLattice lattice_;
     size_t row_size_ = 0;
     std::vector<float> rows_;
+    Media walked_media_;
+    float walked_voxel_ = 0.0f;
     CacheStats stats_;
 };
 

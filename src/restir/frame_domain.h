@@ -46,10 +46,13 @@ struct FrameDomain {
     std::vector<int> at_infinity;  ///< of `lights`
     std::vector<int> infinite;     ///< those of them that do so too
     std::shared_ptr<const LampSurfaces> lamp_surfaces;
-    DirectionTargets phase_finds;     ///< what directions from phase functions look for
-    DirectionTargets bsdf_finds;      ///< and those from surfaces
-    bool has_emission = false;        ///< some medium glows
-    bool has_motion = false;          ///< anything moves while the shutter is open
+    DirectionTargets phase_finds;  ///< what directions from phase functions look for
+    DirectionTargets bsdf_finds;   ///< and those from surfaces
+    bool has_emission = false;     ///< some medium glows
+    bool has_motion = false;       ///< anything moves while the shutter is open
+    /// Luminance of light known to come from distant lights and from the environment, the mean over
+    /// pixels in smoke; 0: unknown, every pixel gets the same number of corrections.
+    Vec2 mean_known{0.0f};
     float transmittance_cut = 1e-7f;  ///< where camera rays may end, see make_ray_bins
 
     [[nodiscard]] bool has_sampled_lights() const { return samples_local || !infinite.empty(); }

@@ -84,11 +84,15 @@ void Builder::add_environment() const
         params.hats = {4, 8};
         params.node_spacing = 8.0f * finest_voxel(scene.media);
     }
-    if (same_shadows) out.directions = previous->directions;
+    if (same_shadows) {
+        out.directions = previous->directions;
+        out.guess = previous->guess;
+    }
     out.directions ? ++out.reused : ++out.built;
     if (!out.directions) {
         out.directions =
             std::make_shared<DirectionTransmittance>(scene.media, params, scene.surfaces.get());
+        out.guess = std::make_shared<LightGuess>(make_light_guess(scene.media, *out.directions));
     }
     const bool same_radiance =
         same_light && previous->environment_radiance.size() ==

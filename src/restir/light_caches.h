@@ -9,6 +9,7 @@
 #include "restir/environment_cache.h"
 #include "restir/environment_spots.h"
 #include "restir/light_cells.h"
+#include "restir/light_guess.h"
 #include "restir/local_light.h"
 #include "restir/media_key.h"
 #include "restir/transmittance_map.h"
@@ -41,8 +42,9 @@ struct LightCaches {
     std::vector<LocalLight> local_lights;
     std::vector<Spectrum> environment_radiance;  ///< mean_radiance()
     std::shared_ptr<const DirectionTransmittance> directions;
-    int built = 0;   ///< parts made for this frame
-    int reused = 0;  ///< parts taken over from the frame before
+    std::shared_ptr<const LightGuess> guess;  ///< goes with `directions`
+    int built = 0;                            ///< parts made for this frame
+    int reused = 0;                           ///< parts taken over from the frame before
 };
 
 /// How fine caches are.

@@ -30,9 +30,14 @@ void LightRays::add(int owner, Vec3 x, Vec3 wi, float distance, float time, Spec
 
 void LightRays::trace(const Scene& scene, WalkCounts& counts)
 {
+    trace(scene.surfaces.get(), scene.media, counts);
+}
+
+void LightRays::trace(const Surfaces* surfaces, const Media& media, WalkCounts& counts)
+{
     depths.resize(queries.size());
-    if (!scene.surfaces) {
-        optical_depths(scene.media, queries, depths, counts);
+    if (!surfaces) {
+        optical_depths(media, queries, depths, counts);
         return;
     }
     // Media are walked only where no surface is in the way.
@@ -42,12 +47,12 @@ void LightRays::trace(const Scene& scene, WalkCounts& counts)
     for (size_t i = 0; i < queries.size(); ++i) {
         const DepthQuery& q = queries[i];
         depths[i] = infinity;
-        if (is_shadowed(*scene.surfaces, {q.o, q.d, q.time}, q.t1)) continue;
+        if (is_shadowed(*surfaces, {q.o, q.d, q.time}, q.t1)) continue;
         open.push_back(q);
         places.push_back(i);
     }
     std::vector<float> open_depths(open.size());
-    optical_depths(scene.media, open, open_depths, counts);
+    optical_depths(media, open, open_depths, counts);
     for (size_t i = 0; i < open.size(); ++i) depths[places[i]] = open_depths[i];
 }
 

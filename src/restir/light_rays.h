@@ -22,6 +22,8 @@ struct LightRays {
     void add(int owner, Vec3 x, Vec3 wi, float distance, float time, Spectrum weight,
              float tau_max);
     void trace(const Scene& scene, WalkCounts& counts);
+    /// The same through other media; surfaces may be null.
+    void trace(const Surfaces* surfaces, const Media& media, WalkCounts& counts);
     [[nodiscard]] size_t size() const { return queries.size(); }
     /// What ray i brings.
     [[nodiscard]] Spectrum value(size_t i) const { return weights[i] * std::exp(-depths[i]); }

@@ -38,10 +38,10 @@ WorkCounts work_of(const FrameStats& stats)
     WorkCounts work;
     work.camera_rays = static_cast<double>(stats.camera_rays);
     work.lookups = static_cast<double>(stats.tracking.lookups);
-    work.cells = static_cast<double>(stats.cells);
+    work.cells = sum(stats.cells, stats.coarse_ray_cells);
     work.bricks = sum(stats.uniform_bricks, stats.tracking.closed_bricks);
-    work.shadow_rays =
-        sum(stats.light_rays + stats.tracking.surface_rays, stats.tracking.shadow_rays);
+    work.shadow_rays = sum(stats.light_rays + stats.coarse_rays + stats.tracking.surface_rays,
+                           stats.tracking.shadow_rays);
     work.candidates = static_cast<double>(stats.candidates);
     work.reused = sum(stats.histories_used, stats.neighbours_used);
     return work;

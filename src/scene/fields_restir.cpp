@@ -52,17 +52,17 @@ void describe(FieldVisitor& v, RestirParams& restir)
          .doc = "Distant lights and the environment by closed form plus exact corrections; false: "
                 "they take part in the candidates"},
         restir.control_variate);
-    visit(
-        v,
-        {.key = "distant_rays",
-         .doc = "Exact corrections per pixel and pass towards distant lights; 0: 2, or 1 if light "
-                "may scatter twice",
-         .range = between(0, 64)},
-        restir.distant_rays);
+    visit(v,
+          {.key = "distant_rays",
+           .doc = "Exact corrections per pixel and pass towards distant lights, where these are as "
+                  "bright as in the mean pixel; 0: 2, or 1 if light may scatter twice",
+           .range = between(0, 64)},
+          restir.distant_rays);
     visit(v,
           {.key = "environment_rays",
-           .doc = "Exact corrections per pixel and pass into the environment; 0: 8, or 2 if light "
-                  "may scatter twice",
+           .doc = "Corrections per pixel and pass into the environment, likewise, through coarser "
+                  "media where these are good guesses, few of which are corrected exactly; 0: 8, "
+                  "or 2 if light may scatter twice",
            .range = between(0, 64)},
           restir.environment_rays);
     visit(

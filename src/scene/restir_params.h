@@ -104,8 +104,8 @@ struct RestirParams {
     int candidates = 8;           ///< distances and lights tried per pixel and pass, [1, 256]
     bool control_variate = true;  ///< lights at infinity by closed form plus exact corrections;
                                   ///< else they take part in the candidates
-    int distant_rays = 0;         ///< exact corrections per pass towards distant lights; 0: see
-                                  ///< distant_rays_of
+    int distant_rays = 0;         ///< corrections per pass and mean pixel towards distant lights;
+                                  ///< 0: see distant_rays_of
     int environment_rays = 0;     ///< and into the environment; 0: see environment_rays_of
     IndirectLight indirect = IndirectLight::Auto;
     int indirect_paths = 16;    ///< paths of two and more events per pass

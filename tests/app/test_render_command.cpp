@@ -87,7 +87,8 @@ TEST_F(RenderCommand, StatsTellTheWorkOfTheRestirEstimator)
     EXPECT_EQ(work["caches_built"], 1);
     EXPECT_EQ(work["emission_integrals"], 0);
     for (const char* key : {"caches_reused", "transmittance_maps", "direction_sets", "local_lights",
-                            "light_cells", "light_rays", "cells", "uniform_bricks", "candidates"}) {
+                            "light_cells", "light_rays", "light_ray_cells", "coarse_rays",
+                            "coarse_ray_cells", "cells", "uniform_bricks", "candidates"}) {
         EXPECT_TRUE(work.contains(key)) << key;
     }
 }

@@ -5,6 +5,7 @@
 
 #include "render/film.h"
 #include "render/restir_frame.h"
+#include "restir/correction_need.h"
 #include "restir/domains.h"
 #include "verify/tiles.h"
 
@@ -72,8 +73,8 @@ inline TileStats reference_runs(const TestScene& test, const Effort& effort)
 inline TileStats runs_with_caches(const TestScene& test, std::shared_ptr<const LightCaches> caches,
                                   RenderDescription render, int runs, uint32_t first_seed)
 {
-    const FrameDomain domain =
-        make_frame_domain(borrow(test.scene), std::move(caches), render.restir);
+    FrameDomain domain = make_frame_domain(borrow(test.scene), std::move(caches), render.restir);
+    domain.mean_known = mean_known_light(domain);
     const LightSampler lights(test.scene, render.path);
     return collect(runs, first_seed, [&](uint32_t seed) {
         render.seed = seed;

@@ -53,6 +53,7 @@ LightCaches stale_caches(const Scene& scene, float density_scale)
                                       : Spectrum(0.1f, 3.0f, 0.01f * static_cast<float>(k)));
     }
     caches.environment.emplace(caches.directions, radiance, media, Vec3(-2.0f, 5.0f, 1.0f));
+    caches.guess = std::make_shared<const LightGuess>(LightGuess{media, 1.0f});
     return caches;
 }
 
@@ -98,7 +99,9 @@ std::vector<Garbage> garbage(const Scene& scene)
     for (LightCaches::Distant& distant : bright.distant) {
         distant.map = std::make_shared<TransmittanceMap>();
     }
+    bright.guess = std::make_shared<const LightGuess>(LightGuess{other_media(1e-6f), 1.0f});
     LightCaches dark = fresh;  // all is shadow
+    dark.guess = std::make_shared<const LightGuess>(LightGuess{other_media(1e4f), 0.0f});
     for (LightCaches::Distant& distant : dark.distant) {
         distant.map = std::make_shared<TransmittanceMap>(other_media(1e4f), distant.direction);
     }
