@@ -40,6 +40,7 @@ enum class Stream : uint32_t {
     SurfaceSpatial,
     ScatterNodes,
     Pyramid,
+    PixelRays,
 };
 
 /// Counter-based generator: the n-th number of a stream is a pure function of its key and n, so
