@@ -39,6 +39,17 @@ Counts counts_for(const FrameDomain& frame)
     return n;
 }
 
+/// Asks memory for what sampling a light takes.
+void prefetch_light(const FrameDomain& frame, int light)
+{
+    const auto i = static_cast<size_t>(light);
+    __builtin_prefetch(frame.lights.data() + i);
+    if (i >= frame.scene->lights.size()) return;  // a volume that glows
+    const auto* lamp = reinterpret_cast<const char*>(frame.scene->lights.data() + i);
+    __builtin_prefetch(lamp);
+    __builtin_prefetch(lamp + sizeof(Light) - 1);
+}
+
 /// Draws a surface's candidates, one kind after the other.
 struct Drawing {
     const FrameDomain& frame;
@@ -78,11 +89,22 @@ struct Drawing {
 
     void local() const
     {
-        const double u_light = n.local > 0 ? uniform_double(rng) : 0.0;
+        if (n.local == 0) return;
+        const double u_light = uniform_double(rng);
+        double u[256];  // as many as params.surface.light_candidates may be
+        LightPick picks[256];
+        const auto count = static_cast<size_t>(n.local);
         for (int i = 0; i < n.local; ++i) {
-            double u = u_light + 0.6180339887498949 * i;  // golden-ratio steps, as in the volume
-            u -= std::floor(u);
-            const LightPick pick = frame.caches->cells->sample(domain.v.p, u);
+            u[i] = u_light + 0.6180339887498949 * i;  // golden-ratio steps, as in the volume
+            u[i] -= std::floor(u[i]);
+        }
+        frame.caches->cells->sample(domain.v.p, {u, count}, {picks, count});
+        // Among many lights each is a wait for memory: all of them at once.
+        for (size_t i = 0; i < count; ++i) {
+            if (picks[i].light >= 0) prefetch_light(frame, picks[i].light);
+        }
+        for (size_t i = 0; i < count; ++i) {
+            const LightPick& pick = picks[i];
             if (pick.light >= 0 && pick.pmf > 0.0f) add_point(pick.light, n.local, pick.pmf);
         }
     }
