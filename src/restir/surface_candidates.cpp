@@ -15,6 +15,11 @@ constexpr int candidates_per_lamp = 4;
 /// dark must not become rare and bright.
 constexpr float least_known = 0.25f;
 
+/// Steps of a lattice that fills the square of the first two numbers evenly however many are taken
+/// (powers of 1/1.3247, after Roberts 2018, "The Unreasonable Effectiveness of Quasirandom
+/// Sequences"), and by golden ratio the third.
+const Vec3 lattice_step(0.75487767f, 0.56984029f, 0.61803399f);
+
 /// How many candidates of each kind a surface draws.
 struct Counts {
     int local = 0;
@@ -131,8 +136,12 @@ struct Drawing {
 
     void directions() const
     {
+        const Vec3 base = n.bsdf > 0 ? rng.uniform3() : Vec3(0.0f);
         for (int i = 0; i < n.bsdf; ++i) {
-            const auto sample = sample_bsdf(domain.v, domain.wo, rng.uniform3());
+            // A shifted lattice spreads directions evenly; each alone is as good as random.
+            const Vec3 shifted = base + static_cast<float>(i) * lattice_step;
+            const Vec3 numbers = glm::min(shifted - glm::floor(shifted), Vec3(one_minus_epsilon));
+            const auto sample = sample_bsdf(domain.v, domain.wo, numbers);
             const float u = rng.uniform();
             if (!sample) continue;
             const Ray ray{ray_origin(domain.v, sample->wi), sample->wi, domain.time};
