@@ -26,7 +26,7 @@ struct PassInputs {
     AovSet aovs;
     const LightSampler& lights;           ///< for paths of many events; empty if there are none
     const ScatterNodes* nodes = nullptr;  ///< for previews; null: none
-    SplitMap split;                       ///< empty: no pixel takes several camera rays
+    SplitMap split{};                     ///< empty: no pixel takes several camera rays
 };
 
 /// One pixel's pass: where, and which.

@@ -29,7 +29,7 @@ void split_pixel(const PassInputs& inputs, const PassKey& key, const Ray& main,
     if (strata < 2) return;
     const Scene& scene = *inputs.domain.scene;
     const Camera& camera = scene.camera;
-    const LampSurfaces& lamps = *inputs.domain.lamp_surfaces;
+    const Seeable seeable{scene.surfaces.get(), scene.lights, *inputs.domain.lamp_surfaces};
     const Vec2 corner(key.x, key.y);
     const Vec2 main_place = camera_film(inputs, key) - corner;
     const int main_x = stratum(main_place.x, strata);
@@ -50,7 +50,7 @@ void split_pixel(const PassInputs& inputs, const PassKey& key, const Ray& main,
                 const float time = inputs.domain.has_motion ? rng.uniform() : 0.0f;
                 ray = generate_ray(camera, film, lens, time);
             }
-            look = look_along(scene, lamps, ray, &look);
+            look = look_along(seeable, ray, &look);
             int g = 0;
             while (g < count && !looks_alike(groups[g].look, look)) ++g;
             if (g == count && count < most_parts) groups[count++].look = look;

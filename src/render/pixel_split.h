@@ -1,7 +1,6 @@
 #pragma once
 
 #include "core/buffer2d.h"
-#include "scene/lamp_surfaces.h"
 #include "scene/scene.h"
 
 namespace mote {
@@ -9,11 +8,12 @@ namespace mote {
 /// Strata per side of each pixel [W x H] from which its passes take a camera ray each; 1: one ray.
 using SplitMap = Buffer2D<uint8_t>;
 
-/// Finds pixels in which several camera rays see different things: edges of surfaces, by looks at
-/// the pixels' corners, and lamps too small for those, by projecting them. Depends on scene and
-/// frame alone, not on any sample, so that pixels it misses are noisier but not biased. Empty where
-/// nothing but media is in view. Cost: a ray per pixel of tiles that may see surfaces, and 20 ns
+/// Finds pixels in which several camera rays see different things: edges of surfaces and of wide
+/// lamps, by looks at the pixels' corners, and lamps that could hide between those, by projecting
+/// them. Depends on scene and frame alone, not on any sample, so that pixels it misses are noisier
+/// but not biased. Empty where nothing but media is in view. Lamps mark at most a sixteenth of all
+/// pixels, those with most to gain. Cost: a ray per pixel of tiles that may see surfaces, and 20 ns
 /// per lamp with a surface.
-[[nodiscard]] SplitMap find_split_pixels(const Scene& scene, const LampSurfaces& lamps, int strata);
+[[nodiscard]] SplitMap find_split_pixels(const Scene& scene, int strata);
 
 }  // namespace mote

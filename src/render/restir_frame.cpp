@@ -87,13 +87,12 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
             {render.restir.node_paths, render.restir.node_spacing, render.samples, render.seed});
         stats.cache_cpu_seconds += nodes->cpu_seconds;
     }
-    const PassInputs inputs{
-        domain,
-        render,
-        aovs,
-        lights,
-        nodes ? &*nodes : nullptr,
-        find_split_pixels(scene, *domain.lamp_surfaces, domain.params.edge_strata)};
+    const PassInputs inputs{domain,
+                            render,
+                            aovs,
+                            lights,
+                            nodes ? &*nodes : nullptr,
+                            find_split_pixels(scene, domain.params.edge_strata)};
     PassCounts counts;
     bool finished = false;
     if (plan.reuses_samples()) {

@@ -25,8 +25,7 @@ Vec3 geometric_normal(const Surfaces& surfaces, const SurfaceHit& hit, float tim
 
 }  // namespace
 
-SeenLook look_along(const Scene& scene, const LampSurfaces& lamps, const Ray& ray,
-                    const SeenLook* near)
+SeenLook look_along(const Seeable& scene, const Ray& ray, const SeenLook* near)
 {
     SeenLook look;
     if (scene.surfaces) {
@@ -46,7 +45,7 @@ SeenLook look_along(const Scene& scene, const LampSurfaces& lamps, const Ray& ra
             }
         }
     }
-    lamps.for_each_on_ray(ray, [&](int index) {
+    scene.lamps.for_each_on_ray(ray, [&](int index) {
         const Light& light = scene.lights[static_cast<size_t>(index)];
         const std::optional<LightHit> hit = hit_light(light, ray.o, ray.d);
         if (hit && hit->distance <= look.t) look.Le += hit->Le;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "scene/lamp_surfaces.h"
 #include "scene/scene.h"
 
@@ -15,9 +17,16 @@ struct SeenLook {
     Spectrum Le{0.0f};   ///< emitted towards the camera, by the surface and by lamps before it
 };
 
+/// What there is to look at: surfaces (null: none), and lamps that rays meet, with their index.
+struct Seeable {
+    const Surfaces* surfaces = nullptr;
+    std::span<const Light> lights;
+    const LampSurfaces& lamps;  ///< of `lights`
+};
+
 /// `near`: what a ray beside it sees, which may spare some work; null: unknown. Cost: a ray, and a
 /// shading point where it meets an emissive surface.
-[[nodiscard]] SeenLook look_along(const Scene& scene, const LampSurfaces& lamps, const Ray& ray,
+[[nodiscard]] SeenLook look_along(const Seeable& scene, const Ray& ray,
                                   const SeenLook* near = nullptr);
 
 /// Whether both see about the same: one smooth surface of one brightness, or both none.
