@@ -1,6 +1,14 @@
 #include "render/part_pass.h"
 
 namespace mote {
+namespace {
+
+/// Samples of a surface's lamps that get a shadow ray each where nothing is reused. Measured
+/// against one: bench_lights_room twice as efficient (trimmed), spinning_swirl 1.5 times, others
+/// alike.
+constexpr size_t shaded_alone = 4;
+
+}  // namespace
 
 void PartScratch::clear()
 {
@@ -21,8 +29,10 @@ void trace_part(const PassInputs& inputs, const PassKey& key, const PixelPart& p
     if (scratch.domain.surface.is_sampled()) {
         const SurfaceDomain& surface = scratch.domain.surface;
         SurfaceChoice& choice = scratch.choice;
-        resample_surface(inputs, key, surface, choice, counts);
-        ask_for_light(frame, surface, choice.kept.r, owner, scratch.surface_rays);
+        resample_surface(inputs, key, surface, shaded_alone, choice, counts);
+        for (const PixelReservoir& kept : choice.kept) {
+            ask_for_light(frame, surface, kept.r, owner, scratch.surface_rays);
+        }
         ask_for_lights_apart(surface, choice, owner, scratch.surface_rays);
         sample.work.x += static_cast<float>(choice.candidates.size());
     }
