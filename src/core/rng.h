@@ -42,6 +42,7 @@ enum class Stream : uint32_t {
     Indirect,
     SharedPaths,
     LightGuess,
+    PixelRays,
 };
 
 /// Counter-based generator: the n-th number of a stream is a pure function of its key and n, so

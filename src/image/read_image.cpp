@@ -8,6 +8,7 @@
 #include <fstream>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 #include <dlfcn.h>
 
@@ -16,6 +17,7 @@
 #include "core/error.h"
 #include "core/file_name.h"
 #include "core/text.h"
+#include "image/bare_jpeg.h"
 #include "image/color.h"
 #include "image/exr_check.h"
 #include "image/oiio_plugin.h"
@@ -33,11 +35,15 @@ struct Format {
     const char* shown_name;
 };
 
-constexpr std::array<Format, 3> formats{{
-    {".exr", "\x76\x2f\x31\x01", "openexr", "OpenEXR"},
-    {".hdr", "#?", "hdr", "Radiance HDR"},
-    {".png", "\x89PNG\r\n\x1a\n", "png", "PNG"},
-}};
+constexpr Format exr{".exr", "\x76\x2f\x31\x01", "openexr", "OpenEXR"};
+constexpr Format hdr{".hdr", "#?", "hdr", "Radiance HDR"};
+constexpr Format png{".png", "\x89PNG\r\n\x1a\n", "png", "PNG"};
+constexpr Format jpeg{".jpg", "\xff\xd8\xff", "jpeg", "JPEG"};
+constexpr Format jpeg_by_long_name{".jpeg", jpeg.magic, jpeg.reader, jpeg.shown_name};
+constexpr std::array formats{&exr, &hdr, &png, &jpeg, &jpeg_by_long_name};
+
+/// JPEG files larger than this are none of pictures that could be read.
+constexpr std::streamoff most_jpeg_bytes = std::streamoff{1} << 30;
 
 [[noreturn]] void fail(const std::string& path, const std::string& reason)
 {
@@ -48,12 +54,19 @@ constexpr std::array<Format, 3> formats{{
 const Format& format_of(const ImageSource& source)
 {
     const std::string& path = source.path;
-    if (!source.bytes.empty()) return formats[2];
-    const std::string extension = lower_extension(path);
-    for (const Format& format : formats) {
-        if (format.extension == extension) return format;
+    if (!source.bytes.empty()) {
+        const std::string_view bytes(reinterpret_cast<const char*>(source.bytes.data()),
+                                     source.bytes.size());
+        for (const Format* format : {&png, &jpeg}) {
+            if (bytes.starts_with(format->magic)) return *format;
+        }
+        fail(path, "only PNG and JPEG images may be inside of other files; convert it to PNG");
     }
-    fail(path, "only .exr, .hdr and .png images are read; convert it to one of them");
+    const std::string extension = lower_extension(path);
+    for (const Format* format : formats) {
+        if (format->extension == extension) return *format;
+    }
+    fail(path, "only .exr, .hdr, .png and .jpg images are read; convert it to one of them");
 }
 
 /// First bytes of a file.
@@ -71,17 +84,41 @@ std::string start_of(const std::string& path)
 void check_content(const ImageSource& source, const Format& format)
 {
     const std::string& path = source.path;
-    if (!source.bytes.empty()) {
-        const std::string_view start(reinterpret_cast<const char*>(source.bytes.data()),
-                                     std::min(source.bytes.size(), format.magic.size()));
-        if (start == format.magic) return;
-        fail(path, "only PNG images may be inside of other files; convert it to PNG");
-    }
+    if (!source.bytes.empty()) return;  // chosen by their first bytes
     if (!start_of(path).starts_with(format.magic)) {
         fail(path, fmt::format("it is no {} file, in spite of its name; check how it was made",
                                format.shown_name));
     }
-    if (format.extension == ".exr") check_exr(path);
+    if (&format == &exr) check_exr(path);
+}
+
+[[nodiscard]] bool is_jpeg(const Format& format)
+{
+    return &format == &jpeg || &format == &jpeg_by_long_name;
+}
+
+std::vector<uint8_t> whole_file(const std::string& path)
+{
+    std::ifstream file(path, std::ios::binary | std::ios::ate);
+    const std::streamoff size = file.tellg();
+    if (!file || size > most_jpeg_bytes) fail(path, "it is too large for a picture");
+    std::vector<uint8_t> bytes(static_cast<size_t>(size));
+    file.seekg(0);
+    if (!file.read(reinterpret_cast<char*>(bytes.data()), size)) {
+        fail(path, std::generic_category().message(errno));
+    }
+    return bytes;
+}
+
+/// What of a JPEG goes to the libraries: nothing that only their parsers of metadata read.
+std::vector<uint8_t> bare_bytes(const ImageSource& source)
+{
+    std::vector<uint8_t> file;
+    if (source.bytes.empty()) file = whole_file(source.path);
+    std::string error;
+    std::vector<uint8_t> bare = bare_jpeg(source.bytes.empty() ? file : source.bytes, error);
+    if (bare.empty()) fail(source.path, fmt::format("the JPEG file cannot be used: {}", error));
+    return bare;
 }
 
 /// Folders that may hold the module: the executable's, and the build tree's.
@@ -127,10 +164,16 @@ StoredImage read_stored(const ImageSource& source, int channels)
 {
     const Format& format = format_of(source);
     check_content(source, format);
+    std::vector<uint8_t> bare;
+    ImageSource shown = source;
+    if (is_jpeg(format)) {
+        bare = bare_bytes(source);
+        shown.bytes = bare;
+    }
     static const ReadWithOiio read_with_oiio = load_plugin();
     StoredImage image;
     std::string error;
-    if (!read_with_oiio(source, format.reader, channels, image, error)) {
+    if (!read_with_oiio(shown, format.reader, channels, image, error)) {
         fail(source.path, fmt::format("the {} file is damaged or not supported ({})",
                                       format.shown_name, printable(error)));
     }
@@ -173,7 +216,8 @@ StoredImage read_stored_image(const ImageSource& source)
 
 bool stores_srgb(const ImageSource& source)
 {
-    return format_of(source).extension == ".png";
+    const Format& format = format_of(source);
+    return &format == &png || is_jpeg(format);
 }
 
 }  // namespace mote

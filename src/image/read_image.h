@@ -15,20 +15,21 @@ struct ImageReadReport {
     int64_t negative = 0;
 };
 
-/// Reads an environment map as linear RGB: .exr and .hdr as they are, .png decoded from
+/// Reads an environment map as linear RGB: .exr and .hdr as they are, .png and .jpg decoded from
 /// sRGB; one-channel images become grey. Nothing else is read, and a file's first bytes must agree
-/// with its extension: the libraries behind are not hardened parsers. They are loaded at the first
+/// with its extension: the libraries behind are not hardened parsers, which is why of JPEG they see
+/// no more than the coded pixels (see bare_jpeg). They are loaded at the first
 /// call (hundreds of shared objects), so scenes without images do not pay for them. Throws
 /// Error(Input) naming the file; limits as read_exr.
 [[nodiscard]] Buffer2D<Spectrum> read_image(const std::string& path,
                                             ImageReadReport* report = nullptr);
 
-/// Reads a texture as stored, with alpha: the same formats by the same rules; from bytes PNG alone
-/// (`path` is then only a name).
+/// Reads a texture as stored, with alpha: the same formats by the same rules; from bytes PNG and
+/// JPEG (`path` is then only a name).
 /// Throws as read_image.
 [[nodiscard]] StoredImage read_stored_image(const ImageSource& source);
 
-/// Whether a file of this name stores colours by the sRGB curve: .png does.
+/// Whether a file stores colours by the sRGB curve: PNG and JPEG do.
 [[nodiscard]] bool stores_srgb(const ImageSource& source);
 
 }  // namespace mote

@@ -5,7 +5,7 @@
 
 #include "multiscatter/path_vertex.h"
 #include "restir/coarse_extinction.h"
-#include "restir/float8.h"
+#include "core/float8.h"
 
 namespace mote {
 

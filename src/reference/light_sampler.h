@@ -7,6 +7,7 @@
 #include "core/rng.h"
 #include "reference/light_guide.h"
 #include "scene/lamp_surfaces.h"
+#include "scene/light_tree.h"
 #include "scene/path_tracer_params.h"
 #include "scene/scene.h"
 #include "volumes/emission.h"

@@ -11,6 +11,9 @@
 namespace mote {
 namespace {
 
+/// Passes are fewer than 2^24.
+constexpr uint32_t first_part_bit = 24;
+
 uint32_t pixel_index(const Camera& camera, const PassKey& key)
 {
     return static_cast<uint32_t>(key.y * camera.width + key.x);
@@ -22,7 +25,8 @@ PassSequence pass_numbers(const PassInputs& inputs, const PassKey& key)
     const uint32_t frame_key =
         hash_combine(hash_combine(hash32(inputs.render.seed), static_cast<uint32_t>(scene.frame)),
                      static_cast<uint32_t>(Stream::Camera));
-    return {hash_combine(frame_key, pixel_index(scene.camera, key)), key.pass};
+    const uint32_t pixel_key = hash_combine(frame_key, pixel_index(scene.camera, key));
+    return {key.part == 0 ? pixel_key : hash_combine(pixel_key, key.part), key.pass};
 }
 
 Vec2 pair(const PassSequence& numbers, NumberPair which)
@@ -125,14 +129,19 @@ Rng pass_rng(const PassInputs& inputs, const PassKey& key, Stream stream)
 {
     const Scene& scene = *inputs.domain.scene;
     return {inputs.render.seed, static_cast<uint32_t>(scene.frame), stream,
-            pixel_index(scene.camera, key), key.pass};
+            pixel_index(scene.camera, key), key.pass | key.part << first_part_bit};
+}
+
+Vec2 camera_film(const PassInputs& inputs, const PassKey& key)
+{
+    return Vec2(key.x, key.y) + pair(pass_numbers(inputs, key), NumberPair::Film);
 }
 
 Ray camera_ray(const PassInputs& inputs, const PassKey& key)
 {
     const PassSequence numbers = pass_numbers(inputs, key);
     const Camera& camera = inputs.domain.scene->camera;
-    const Vec2 film = Vec2(key.x, key.y) + pair(numbers, NumberPair::Film);
+    const Vec2 film = camera_film(inputs, key);
     const Vec2 lens = camera.lens_radius > 0.0f ? pair(numbers, NumberPair::Lens) : Vec2(0.5f);
     const bool moves = inputs.domain.has_motion;
     return generate_ray(camera, film, lens, moves ? pair(numbers, NumberPair::Time).x : 0.0f);

@@ -5,6 +5,7 @@
 #include "multiscatter/scatter_nodes.h"
 #include "render/aov.h"
 #include "render/film.h"
+#include "render/pixel_split.h"
 #include "restir/control_variate.h"
 #include "restir/in_view.h"
 #include "restir/pixel_domain.h"
@@ -36,6 +37,7 @@ struct PassInputs {
     const LightSampler& lights;           ///< for paths of many events; empty if there are none
     const ScatterNodes* nodes = nullptr;  ///< for previews; null: none
     bool shares_paths = false;            ///< of many events: see shares_paths()
+    SplitMap split{};                     ///< empty: no pixel takes several camera rays
 };
 
 /// One pixel's pass: where, and which.
@@ -43,6 +45,7 @@ struct PassKey {
     int x = 0;
     int y = 0;
     uint32_t pass = 0;  ///< counts from 0 within the frame
+    uint32_t part = 0;  ///< of the pixel's pass, see split_pixel
 };
 
 /// Counts of work, for statistics.
@@ -60,7 +63,10 @@ struct PassCounts {
     void add(const PassCounts& other);
 };
 
-/// The pixel's camera ray in a pass: place on the film, on the lens and in time.
+/// Place on the film of the pixel's camera ray in a pass [px].
+[[nodiscard]] Vec2 camera_film(const PassInputs& inputs, const PassKey& key);
+
+/// That ray: place on the film, on the lens and in time.
 [[nodiscard]] Ray camera_ray(const PassInputs& inputs, const PassKey& key);
 
 /// Where a pixel's samples live in a pass: in the media along its ray, and on the surface at its
@@ -84,7 +90,7 @@ void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray, in
 /// background, or none, and no medium or surface that a ray of the tile may meet.
 [[nodiscard]] std::optional<FilmSample> uniform_tile(const PassInputs& inputs, const Tile& tile);
 
-/// The random numbers of one purpose in a pixel's pass.
+/// The random numbers of one purpose in a part of a pixel's pass.
 [[nodiscard]] Rng pass_rng(const PassInputs& inputs, const PassKey& key, Stream stream);
 
 }  // namespace mote

@@ -12,55 +12,64 @@ bool FilmSample::is_finite() const
            (!collided || std::isfinite(depth));
 }
 
-Spectrum MeanSpectrum::mean(int64_t count) const
+Spectrum MeanSpectrum::mean(double count) const
 {
-    return count > 0 ? Spectrum(sum / static_cast<double>(count)) : Spectrum(0.0f);
+    return count > 0.0 ? Spectrum(sum / count) : Spectrum(0.0f);
 }
 
-bool PixelFilm::add(const FilmSample& sample)
+bool PixelFilm::add(std::span<const FilmSample> parts)
 {
-    if (!sample.is_finite()) {
-        add(FilmSample{});
-        return false;
-    }
-    const Spectrum L = sample.L();
-    for (int c = 0; c < 3; ++c) rgb_[c].add(static_cast<double>(L[c]));
-    direct_.add(sample.direct);
-    indirect_.add(sample.indirect);
-    emission_.add(sample.emission);
-    background_.add(sample.background);
-    surface_direct_.add(sample.surface_direct);
-    surface_indirect_.add(sample.surface_indirect);
-    surface_emission_.add(sample.surface_emission);
-    if (sample.has_surface) {
-        ++surfaces_;
-        normal_.add(sample.normal);
-        position_.add(sample.position);
-        if (sample.surface_distance < nearest_surface_) {
-            nearest_surface_ = sample.surface_distance;
-            material_ = sample.material;
+    glm::dvec3 L(0.0);
+    for (const FilmSample& part : parts) {
+        if (!part.is_finite()) {
+            add(FilmSample{});
+            return false;
         }
+        L += static_cast<double>(part.weight) * glm::dvec3(part.L());
     }
-    const double tau = static_cast<double>(sample.optical_depth);
-    transmittance_ += static_cast<double>(sample.transmittance);
-    exact_transmittance_ += std::exp(-tau);
-    optical_depth_ += tau;
-    reservoir_.add(sample.reservoir);
-    work_.add(sample.work);
-    exact_rays_ += static_cast<double>(sample.exact_rays);
-    if (sample.collided) {
-        ++collisions_;
-        albedo_.add(sample.albedo);
-        if (!sample.on_surface) {
-            ++in_smoke_;
-            depth_ += static_cast<double>(sample.depth);
-        }
-        nearest_ = std::min(nearest_, sample.depth);
-        collision_motion_ += glm::dvec2(sample.motion);
-    } else {
-        background_motion_ += glm::dvec2(sample.motion);
-    }
+    for (int c = 0; c < 3; ++c) rgb_[c].add(L[c]);
+    for (const FilmSample& part : parts) add_part(part);
     return true;
+}
+
+void PixelFilm::add_part(const FilmSample& part)
+{
+    const auto weight = static_cast<double>(part.weight);
+    direct_.add(part.direct, weight);
+    indirect_.add(part.indirect, weight);
+    emission_.add(part.emission, weight);
+    background_.add(part.background, weight);
+    surface_direct_.add(part.surface_direct, weight);
+    surface_indirect_.add(part.surface_indirect, weight);
+    surface_emission_.add(part.surface_emission, weight);
+    if (part.has_surface) {
+        surfaces_ += weight;
+        normal_.add(part.normal, weight);
+        position_.add(part.position, weight);
+        if (part.surface_distance < nearest_surface_) {
+            nearest_surface_ = part.surface_distance;
+            material_ = part.material;
+        }
+    }
+    const double tau = static_cast<double>(part.optical_depth);
+    transmittance_ += weight * static_cast<double>(part.transmittance);
+    exact_transmittance_ += weight * std::exp(-tau);
+    optical_depth_ += weight * tau;
+    reservoir_.add(part.reservoir);
+    work_.add(part.work);
+    exact_rays_ += static_cast<double>(part.exact_rays);
+    if (part.collided) {
+        collisions_ += weight;
+        albedo_.add(part.albedo, weight);
+        if (!part.on_surface) {
+            in_smoke_ += weight;
+            depth_ += weight * static_cast<double>(part.depth);
+        }
+        nearest_ = std::min(nearest_, part.depth);
+        collision_motion_ += weight * glm::dvec2(part.motion);
+    } else {
+        background_motion_ += weight * glm::dvec2(part.motion);
+    }
 }
 
 Spectrum PixelFilm::mean() const
@@ -87,22 +96,21 @@ void PixelFilm::layer(Aov aov, float (&values)[3]) const
     const auto store = [&](Spectrum s) {
         for (int c = 0; c < 3; ++c) values[c] = s[c];
     };
-    const double n = static_cast<double>(std::max<int64_t>(count(), 1));
+    const auto samples = static_cast<double>(count());
+    const double n = std::max(samples, 1.0);
     switch (aov) {
         case Aov::Z:
-            values[0] = collisions_ > 0 ? nearest_ : background_depth;
+            values[0] = collisions_ > 0.0 ? nearest_ : background_depth;
             break;
         case Aov::VolumeZ:
-            values[0] = in_smoke_ > 0 ? static_cast<float>(depth_ / static_cast<double>(in_smoke_))
-                                      : background_depth;
+            values[0] = in_smoke_ > 0.0 ? static_cast<float>(depth_ / in_smoke_) : background_depth;
             break;
         case Aov::Albedo:
-            store(albedo_.mean(count()));
+            store(albedo_.mean(samples));
             break;
         case Aov::Motion: {
-            const glm::dvec2 motion = collisions_ > 0
-                                          ? collision_motion_ / static_cast<double>(collisions_)
-                                          : background_motion_ / n;
+            const glm::dvec2 motion =
+                collisions_ > 0.0 ? collision_motion_ / collisions_ : background_motion_ / n;
             values[0] = static_cast<float>(motion.x);
             values[1] = static_cast<float>(motion.y);
             break;
@@ -114,16 +122,16 @@ void PixelFilm::layer(Aov aov, float (&values)[3]) const
             values[0] = static_cast<float>(count());
             break;
         case Aov::VolumeDirect:
-            store(direct_.mean(count()));
+            store(direct_.mean(samples));
             break;
         case Aov::VolumeIndirect:
-            store(indirect_.mean(count()));
+            store(indirect_.mean(samples));
             break;
         case Aov::VolumeEmission:
-            store(emission_.mean(count()));
+            store(emission_.mean(samples));
             break;
         case Aov::Background:
-            store(background_.mean(count()));
+            store(background_.mean(samples));
             break;
         case Aov::Transmittance:
             store(Spectrum(static_cast<float>(exact_transmittance_ / n)));
@@ -132,13 +140,13 @@ void PixelFilm::layer(Aov aov, float (&values)[3]) const
             values[0] = static_cast<float>(optical_depth_ / n);
             break;
         case Aov::Direct:
-            store(surface_direct_.mean(count()));
+            store(surface_direct_.mean(samples));
             break;
         case Aov::Indirect:
-            store(surface_indirect_.mean(count()));
+            store(surface_indirect_.mean(samples));
             break;
         case Aov::Emission:
-            store(surface_emission_.mean(count()));
+            store(surface_emission_.mean(samples));
             break;
         case Aov::Normal:
             store(normal_.mean(surfaces_));
@@ -150,13 +158,13 @@ void PixelFilm::layer(Aov aov, float (&values)[3]) const
             values[0] = static_cast<float>(material_ + 1);
             break;
         case Aov::Restir:
-            store(reservoir_.mean(count()));
+            store(reservoir_.mean(samples));
             break;
         case Aov::Cost:
             values[0] = static_cast<float>(exact_rays_ / n);
             break;
         case Aov::Work:
-            store(work_.mean(count()));
+            store(work_.mean(samples));
             break;
     }
 }

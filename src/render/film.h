@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "core/buffer2d.h"
 #include "core/math.h"
@@ -12,6 +13,7 @@ namespace mote {
 
 /// What one camera path brings to a pixel, for the layers that were asked for.
 struct FilmSample {
+    float weight = 1.0f;  ///< share of the pixel's pass that it stands for, (0,1]
     Spectrum direct{0.0f};
     Spectrum indirect{0.0f};
     Spectrum emission{0.0f};
@@ -47,8 +49,8 @@ struct FilmSample {
 struct MeanSpectrum {
     glm::dvec3 sum{0.0};
 
-    void add(Spectrum s) { sum += glm::dvec3(s); }
-    [[nodiscard]] Spectrum mean(int64_t count) const;
+    void add(Spectrum s, double weight = 1.0) { sum += weight * glm::dvec3(s); }
+    [[nodiscard]] Spectrum mean(double count) const;
 };
 
 /// All samples of one pixel. The pixel filter is the pixel's square (a box of width 1), sampled
@@ -57,7 +59,9 @@ struct MeanSpectrum {
 class PixelFilm {
   public:
     /// Adds a sample; one with a value that is not finite counts as black and gives false.
-    bool add(const FilmSample& sample);
+    bool add(const FilmSample& sample) { return add(std::span<const FilmSample>(&sample, 1)); }
+    /// Adds one of several parts, whose weights sum to 1; work counts as done for each.
+    bool add(std::span<const FilmSample> parts);
 
     [[nodiscard]] int64_t count() const { return rgb_[0].count; }
     [[nodiscard]] Spectrum mean() const;
@@ -67,6 +71,8 @@ class PixelFilm {
     void layer(Aov aov, float (&values)[3]) const;
 
   private:
+    void add_part(const FilmSample& part);
+
     RunningStats rgb_[3];
     MeanSpectrum direct_, indirect_, emission_, background_, albedo_, reservoir_, work_;
     MeanSpectrum surface_direct_, surface_indirect_, surface_emission_, normal_, position_;
@@ -77,10 +83,10 @@ class PixelFilm {
     double depth_ = 0.0;
     float nearest_ = infinity;
     float nearest_surface_ = infinity;
-    int material_ = -1;       ///< of the sample with that surface
-    int64_t collisions_ = 0;  ///< samples that met smoke or a surface
-    int64_t in_smoke_ = 0;    ///< those of them in smoke, of which depth_ is
-    int64_t surfaces_ = 0;    ///< samples with a surface, smoke in front or not
+    int material_ = -1;        ///< of the sample with that surface
+    double collisions_ = 0.0;  ///< samples that met smoke or a surface
+    double in_smoke_ = 0.0;    ///< those of them in smoke, of which depth_ is
+    double surfaces_ = 0.0;    ///< samples with a surface, smoke in front or not
     glm::dvec2 collision_motion_{0.0};
     glm::dvec2 background_motion_{0.0};
 };

@@ -26,7 +26,8 @@ struct FrameStats {
     int64_t paths = 0;
     int64_t dropped_non_finite = 0;  ///< samples replaced by 0; must be 0
     int64_t truncated_paths = 0;     ///< cut by max_bounces though they could have gone on
-    double cache_cpu_seconds = 0.0;  ///< building light caches, part of render_cpu_seconds
+    double cache_cpu_seconds = 0.0;  ///< building light caches and the index of lamps that rays
+                                     ///< meet, part of render_cpu_seconds
     int64_t camera_rays = 0;         ///< tabulated by the ReSTIR estimator: those that met smoke
     int64_t missed_rays = 0;         ///< camera rays that met no medium's bounds: nothing is walked
     int64_t light_rays = 0;          ///< traced exactly towards lights

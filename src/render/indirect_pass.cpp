@@ -109,13 +109,12 @@ void add_indirect(const PassInputs& inputs, const PassKey& key, const PixelDomai
     counts.truncated += truncated ? 0 : -1;
 }
 
-std::vector<Spectrum> light_shared_paths(const PassInputs& inputs, const Tile& tile, uint32_t pass,
+std::vector<Spectrum> light_shared_paths(const PassInputs& inputs, const PassKey& key,
                                          std::vector<PathVertex>& first, PassCounts& counts)
 {
     if (first.empty()) return {};
-    // Owners count up.
     std::vector<Spectrum> light(static_cast<size_t>(first.back().from) + 1, Spectrum(0.0f));
-    Rng rng = pass_rng(inputs, {tile.x0, tile.y0, pass}, Stream::SharedPaths);
+    Rng rng = pass_rng(inputs, key, Stream::SharedPaths);
     const CachedGuesses guesses(*inputs.domain.caches);
     bool truncated = false;
     share_paths(context_with(inputs, guesses), *inputs.domain.caches->extinction, {},

@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "core/parallel.h"
 #include "multiscatter/path_vertex.h"
 #include "render/camera_pass.h"
 
@@ -20,11 +19,10 @@ void add_indirect(const PassInputs& inputs, const PassKey& key, const PixelDomai
                   const SurfaceVertex* surface, int owner, std::vector<PathVertex>& first,
                   FilmSample& sample, PassCounts& counts);
 
-/// What shared paths bring to the pixels of a tile in a pass, by owner; empty if there is nothing
-/// to be lit. `first` is emptied. If max_bounces cuts one path, all pixels with such light count as
-/// truncated.
-[[nodiscard]] std::vector<Spectrum> light_shared_paths(const PassInputs& inputs, const Tile& tile,
-                                                       uint32_t pass,
+/// What shared paths bring by owner; empty if there is nothing to be lit. Owners count up in
+/// `first`, which is emptied. `key`: of all that share. If max_bounces cuts one path, all owners
+/// count as truncated.
+[[nodiscard]] std::vector<Spectrum> light_shared_paths(const PassInputs& inputs, const PassKey& key,
                                                        std::vector<PathVertex>& first,
                                                        PassCounts& counts);
 

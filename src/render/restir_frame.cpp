@@ -6,10 +6,9 @@
 #include "core/parallel.h"
 #include "multiscatter/cached_lights.h"
 #include "render/indirect_pass.h"
+#include "render/part_pass.h"
 #include "render/restir_reuse.h"
-#include "render/surface_pass.h"
 #include "restir/cache_stats.h"
-#include "restir/candidates.h"
 #include "restir/correction_need.h"
 
 namespace mote {
@@ -17,69 +16,30 @@ namespace {
 
 /// What one tile works with; allocated once per tile, reused over its passes.
 struct TileScratch {
-    TileRays rays;
-    LightRays surface_rays;
-    std::vector<Candidate> candidates;
-    SurfaceChoice choice;
-    std::vector<FilmSample> samples;
+    PartScratch traced;
+    std::vector<PixelPart> parts;
+    std::vector<size_t> first;  ///< of each pixel's parts in `traced`, and their end
     std::vector<PixelFilm> pixels;
-    PassDomain domain;
-    std::vector<PathVertex> first;
 };
 
 void trace_tile_pass(const PassInputs& inputs, const Tile& tile, uint32_t pass,
                      TileScratch& scratch, PassCounts& counts)
 {
-    const FrameDomain& frame = inputs.domain;
-    scratch.rays.clear();
-    scratch.surface_rays.clear();
-    int owner = 0;
+    scratch.traced.clear();
+    scratch.first.clear();
     for (int y = tile.y0; y < tile.y1; ++y) {
-        for (int x = tile.x0; x < tile.x1; ++x, ++owner) {
-            const PassKey key{x, y, pass};
-            FilmSample& sample = scratch.samples[static_cast<size_t>(owner)];
-            sample = {};
-            begin_pass(inputs, key, camera_ray(inputs, key), owner, scratch.domain, scratch.rays,
-                       scratch.first, sample, counts);
-            if (inputs.render.path.max_bounces == 0) continue;
-            if (scratch.domain.surface.is_sampled()) {
-                const SurfaceDomain& surface = scratch.domain.surface;
-                SurfaceChoice& choice = scratch.choice;
-                resample_surface(inputs, key, surface, choice, counts);
-                ask_for_light(frame, surface, choice.kept.r, owner, scratch.surface_rays);
-                ask_for_lights_apart(surface, choice, owner, scratch.surface_rays);
-                sample.work.x += static_cast<float>(choice.candidates.size());
-            }
-            PixelDomain& domain = scratch.domain.media;
-            if (!frame.has_sampled_lights() || domain.bins.empty()) continue;
-            weigh_bins(frame, domain);
-            Rng rng = pass_rng(inputs, key, Stream::Initial);
-            scratch.candidates.clear();
-            draw_candidates(frame, domain, frame.params.candidates, rng, scratch.candidates);
-            counts.candidates += static_cast<int64_t>(scratch.candidates.size());
-            sample.work.x += static_cast<float>(scratch.candidates.size());
-            for (const Candidate& c : scratch.candidates) {
-                const Spectrum weight = c.f / c.density;
-                scratch.rays.exact.add(owner, c.x, c.arrival.wi, c.arrival.distance,
-                                       domain.ray.time, weight,
-                                       depth_that_matters(weight, luminance(sample.L())));
+        for (int x = tile.x0; x < tile.x1; ++x) {
+            scratch.first.push_back(scratch.traced.samples.size());
+            PassKey key{x, y, pass};
+            split_pixel(inputs, key, camera_ray(inputs, key), scratch.parts);
+            for (const PixelPart& part : scratch.parts) {
+                trace_part(inputs, key, part, scratch.traced, counts);
+                ++key.part;
             }
         }
     }
-    const std::vector<Spectrum> shared =
-        light_shared_paths(inputs, tile, pass, scratch.first, counts);
-    for (size_t i = 0; i < shared.size(); ++i) scratch.samples[i].indirect += shared[i];
-    scratch.rays.trace(frame, counts.guesses, counts.light_rays, [&](int of, Spectrum value) {
-        FilmSample& sample = scratch.samples[static_cast<size_t>(of)];
-        sample.direct += value;
-        sample.exact_rays += 1.0f;
-    });
-    scratch.surface_rays.trace(*frame.scene, counts.light_rays);
-    for (size_t i = 0; i < scratch.surface_rays.size(); ++i) {
-        FilmSample& sample = scratch.samples[static_cast<size_t>(scratch.surface_rays.owners[i])];
-        sample.surface_direct += scratch.surface_rays.value(i);
-        sample.exact_rays += 1.0f;
-    }
+    scratch.first.push_back(scratch.traced.samples.size());
+    shade_parts(inputs, {tile.x0, tile.y0, pass}, scratch.traced, counts);
 }
 
 int64_t pixel_passes(const RenderDescription& render)
@@ -112,12 +72,12 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
     const bool may_share =
         render.path.max_bounces > 1 && render.restir.indirect != IndirectLight::Paths;
     history.caches = make_light_caches(scene, {pixel_passes(render), may_share}, history.caches);
-    stats.cache_cpu_seconds = process_cpu_seconds() - cpu_start;
     const bool keeps_history = uses_history(render);
     FrameDomain domain = make_frame_domain(
         share(scene, keeps_history), history.caches,
         settle_corrections(render.restir, render.path.max_bounces), &history.last);
     domain.mean_known = mean_known_light(domain);
+    stats.cache_cpu_seconds = process_cpu_seconds() - cpu_start;
     std::optional<Change> change;
     if (history.last.scene) change = change_between(history.last, domain);
     const ReusePlan plan = plan_reuse(domain, render, change);
@@ -130,8 +90,13 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
             {render.restir.node_paths, render.restir.node_spacing, render.samples, render.seed});
         stats.cache_cpu_seconds += nodes->cpu_seconds;
     }
-    const PassInputs inputs{
-        domain, render, aovs, lights, nodes ? &*nodes : nullptr, shares_paths(domain, render.path)};
+    const PassInputs inputs{domain,
+                            render,
+                            aovs,
+                            lights,
+                            nodes ? &*nodes : nullptr,
+                            shares_paths(domain, render.path),
+                            find_split_pixels(scene, domain.params.edge_strata)};
     PassCounts counts;
     bool finished = false;
     if (plan.reuses_samples()) {
@@ -187,7 +152,10 @@ bool render_independent_passes(const PassInputs& inputs, const FrameControl& con
             static_cast<size_t>(tile.x1 - tile.x0) * static_cast<size_t>(tile.y1 - tile.y0);
         TileScratch scratch;
         const std::optional<FilmSample> uniform = uniform_tile(inputs, tile);
-        scratch.samples.resize(pixels, uniform.value_or(FilmSample{}));
+        if (uniform) {
+            scratch.traced.samples.assign(pixels, *uniform);
+            for (size_t i = 0; i <= pixels; ++i) scratch.first.push_back(i);
+        }
         scratch.pixels.resize(pixels);
         const auto for_pixels = [&](auto&& f) {
             size_t i = 0;
@@ -208,7 +176,10 @@ bool render_independent_passes(const PassInputs& inputs, const FrameControl& con
                 trace_tile_pass(inputs, tile, static_cast<uint32_t>(pass), scratch, tile_counts);
             }
             for (size_t i = 0; i < pixels; ++i) {
-                tile_dropped += scratch.pixels[i].add(scratch.samples[i]) ? 0 : 1;
+                const std::span<const FilmSample> parts(
+                    scratch.traced.samples.data() + scratch.first[i],
+                    scratch.first[i + 1] - scratch.first[i]);
+                tile_dropped += scratch.pixels[i].add(parts) ? 0 : 1;
             }
         }
         for_pixels([&](int x, int y, const PixelFilm& p) { film.store(x, y, p); });

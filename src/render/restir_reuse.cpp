@@ -1,11 +1,11 @@
 #include "render/restir_reuse.h"
 #include "render/indirect_pass.h"
 
+#include <algorithm>
 #include <atomic>
 #include <mutex>
 
-#include "render/surface_pass.h"
-#include "restir/candidates.h"
+#include "render/part_pass.h"
 #include "restir/surface_reuse.h"
 
 namespace mote {
@@ -13,6 +13,12 @@ namespace {
 
 /// From this many lamps on `auto` reuses surfaces' samples in motion.
 constexpr size_t many_lamps = 16;
+
+/// A part of a pixel's pass beside that of its reservoirs: on its own, without reuse.
+struct OtherPart {
+    size_t pixel = 0;
+    FilmSample sample;
+};
 
 /// Whole-image buffers of a pass under way.
 struct PassBuffers {
@@ -33,6 +39,7 @@ struct PassBuffers {
     Buffer2D<Spectrum> colors;  ///< of the sampled lights
     Buffer2D<Acceptance> acceptance;
     SurfaceBuffers surfaces;
+    std::vector<OtherPart> others;
 };
 
 /// Everything of one frame's passes.
@@ -60,6 +67,11 @@ struct ReusingFrame {
         if (control.stop && control.stop()) stopped.store(true, std::memory_order_relaxed);
         return stopped.load(std::memory_order_relaxed);
     }
+    [[nodiscard]] size_t pixel_index(int x, int y) const
+    {
+        return static_cast<size_t>(y) * static_cast<size_t>(buffers.colors.width()) +
+               static_cast<size_t>(x);
+    }
     [[nodiscard]] PixelRng rng(Stream stream, uint32_t pass) const
     {
         return [this, stream, pass](int x, int y) {
@@ -82,6 +94,8 @@ struct ReusingFrame {
     /// `kept`: where rays are taken from; null: drawn.
     void fill_initial(const Tile& tile, uint32_t pass, const DomainStore* kept, FinishedPass& now,
                       PassCounts& n);
+    /// Adds a pass to the pixels, with all their parts; returns how many were dropped.
+    int64_t finish_pass(Buffer2D<PixelFilm>& pixels);
     /// All of a pass's work on surfaces, after fill_initial.
     void pass_over_surfaces(const ReusePlan& plan, uint32_t pass, const FinishedPass& before,
                             FinishedPass& now);
@@ -105,6 +119,9 @@ void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, const DomainSto
     PassDomain pass_domain;
     PixelDomain& domain = pass_domain.media;
     std::vector<PathVertex> first_vertices;
+    std::vector<PixelPart> parts;
+    PartScratch traced;
+    std::vector<OtherPart> others;
     for (int y = tile.y0; y < tile.y1; ++y) {
         for (int x = tile.x0; x < tile.x1; ++x) {
             const PassKey key{x, y, pass};
@@ -114,6 +131,14 @@ void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, const DomainSto
             const auto owner = static_cast<int>(samples.size());
             samples.push_back(&sample);
             const Ray ray = kept ? kept->ray(x, y) : camera_ray(inputs, key);
+            if (!kept) {
+                split_pixel(inputs, key, ray, parts);
+                sample.weight = parts[0].weight;
+                for (uint32_t i = 1; i < parts.size(); ++i) {
+                    trace_part(inputs, {x, y, pass, i}, parts[i], traced, n);
+                    others.push_back({pixel_index(x, y), {}});
+                }
+            }
             begin_pass(inputs, key, ray, owner, pass_domain, corrections, first_vertices, sample,
                        n);
             if (inputs.render.path.max_bounces == 0) pass_domain.surface.share = 0.0f;
@@ -145,8 +170,15 @@ void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, const DomainSto
             }
         }
     }
+    shade_parts(inputs, {tile.x0, tile.y0, pass, 1}, traced, n);
+    for (size_t i = 0; i < others.size(); ++i) others[i].sample = traced.samples[i];
+    if (!others.empty()) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        buffers.others.insert(buffers.others.end(), others.begin(), others.end());
+    }
     n.candidates += static_cast<int64_t>(candidates.size());
-    const std::vector<Spectrum> shared = light_shared_paths(inputs, tile, pass, first_vertices, n);
+    const std::vector<Spectrum> shared =
+        light_shared_paths(inputs, {tile.x0, tile.y0, pass}, first_vertices, n);
     for (size_t i = 0; i < shared.size(); ++i) samples[i]->indirect += shared[i];
     corrections.trace(frame, n.guesses, n.light_rays, [&](int of, Spectrum value) {
         FilmSample& sample = *samples[static_cast<size_t>(of)];
@@ -166,6 +198,29 @@ void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, const DomainSto
                                                 numbers, buffers.colors.at(x, y));
         }
     }
+}
+
+int64_t ReusingFrame::finish_pass(Buffer2D<PixelFilm>& pixels)
+{
+    // Tiles came in any order; the parts of one pixel are in theirs.
+    std::vector<OtherPart>& others = buffers.others;
+    std::stable_sort(others.begin(), others.end(),
+                     [](const OtherPart& a, const OtherPart& b) { return a.pixel < b.pixel; });
+    auto other = others.begin();
+    int64_t dropped = 0;
+    std::vector<FilmSample> parts;
+    for (size_t i = 0; i < pixels.size(); ++i) {
+        FilmSample& sample = buffers.samples.data()[i];
+        const Reservoir& r = buffers.current.data()[i].r;
+        sample.direct += buffers.colors.data()[i];
+        sample.reservoir = Vec3(r.M, r.W, r.age);
+        sample.work.z = buffers.acceptance.data()[i].share();
+        parts.assign(1, sample);
+        for (; other != others.end() && other->pixel == i; ++other) parts.push_back(other->sample);
+        dropped += pixels.data()[i].add(parts) ? 0 : 1;
+    }
+    others.clear();
+    return dropped;
 }
 
 void ReusingFrame::pass_over_surfaces(const ReusePlan& plan, uint32_t pass,
@@ -302,14 +357,7 @@ bool render_reusing_passes(const PassInputs& inputs, const ReusePlan& plan,
             });
         }
         if (run.stopped) return false;
-        for (size_t i = 0; i < pixels.size(); ++i) {
-            FilmSample& sample = buffers.samples.data()[i];
-            const Reservoir& r = buffers.current.data()[i].r;
-            sample.direct += buffers.colors.data()[i];
-            sample.reservoir = Vec3(r.M, r.W, r.age);
-            sample.work.z = buffers.acceptance.data()[i].share();
-            dropped += pixels.data()[i].add(sample) ? 0 : 1;
-        }
+        dropped += run.finish_pass(pixels);
         before = std::move(now);
     }
     for (int y = 0; y < height; ++y) {

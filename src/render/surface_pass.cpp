@@ -21,7 +21,7 @@ void set_light(PixelReservoir& own, SurfaceVisibility visibility, Spectrum f, fl
 }  // namespace
 
 void resample_surface(const PassInputs& inputs, const PassKey& key, const SurfaceDomain& domain,
-                      SurfaceChoice& choice, PassCounts& counts)
+                      size_t groups, SurfaceChoice& choice, PassCounts& counts)
 {
     const FrameDomain& frame = inputs.domain;
     Rng rng = pass_rng(inputs, key, Stream::Surface);
@@ -41,7 +41,12 @@ void resample_surface(const PassInputs& inputs, const PassKey& key, const Surfac
         lamps = static_cast<size_t>(end - all.begin());
     }
     Spectrum unshadowed;
-    choice.kept = resample({all.data(), lamps}, rng, unshadowed);
+    choice.kept.clear();
+    for (size_t g = 0; g == 0 || g < std::min(groups, lamps); ++g) {
+        choice.group.clear();
+        for (size_t i = g; i < lamps; i += groups) choice.group.push_back(all[i]);
+        choice.kept.push_back(resample(choice.group, rng, unshadowed));
+    }
     choice.apart = {all.data() + lamps, all.size() - lamps};
 }
 
@@ -81,12 +86,12 @@ void fill_surface_reservoirs(const PassInputs& inputs, const Tile& tile, uint32_
             out.colors.at(x, y) = Spectrum(0.0f);
             const SurfaceDomain& domain = domains.at(x, y);
             if (!domain.is_sampled()) continue;
-            resample_surface(inputs, {x, y, pass}, domain, choice, counts);
+            resample_surface(inputs, {x, y, pass}, domain, 1, choice, counts);
             FilmSample& sample = samples.at(x, y);
             sample.work.x += static_cast<float>(choice.candidates.size());
             ask_for_lights_apart(domain, choice, static_cast<int>(apart_owners.size()), apart);
             apart_owners.push_back(&sample);
-            own = choice.kept;
+            own = choice.kept.front();
             if (!(own.r.W > 0.0f)) continue;
             const Candidate c = evaluate(frame, domain, own.r.y);
             if (visibility == SurfaceVisibility::None) {

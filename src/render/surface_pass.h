@@ -7,18 +7,20 @@ namespace mote {
 
 /// What a surface's candidates were resampled to, and what that takes; reused from pixel to pixel.
 struct SurfaceChoice {
-    PixelReservoir kept;                ///< one of all lamps and glowing media: may be reused
+    std::vector<PixelReservoir> kept;   ///< of lamps and glowing media, one of each group
     std::vector<Candidate> candidates;  ///< all that were drawn
+    std::vector<Candidate> group;       ///< some of them
     /// Those of lights at infinity: little is gained by reusing them, and much lost by having to
     /// choose between them, so they are shaded all. None without params.control_variate: then they
     /// compete with the lamps.
     std::span<const Candidate> apart;
 };
 
-/// Draws a surface's candidates and chooses among them: the target is the unshadowed light times
-/// what the caches know of its shadow. The reservoirs' f have no shadow.
+/// Draws a surface's candidates and chooses among them, one of each of `groups` groups, whose light
+/// adds up: the target is the unshadowed light times what the caches know of its shadow. The
+/// reservoirs' f have no shadow. At least one reservoir is kept; it may be empty.
 void resample_surface(const PassInputs& inputs, const PassKey& key, const SurfaceDomain& domain,
-                      SurfaceChoice& choice, PassCounts& counts);
+                      size_t groups, SurfaceChoice& choice, PassCounts& counts);
 
 /// Asks for the shadow ray of a surface's reservoir; it brings its light as the camera sees it.
 void ask_for_light(const FrameDomain& frame, const SurfaceDomain& domain, const Reservoir& r,

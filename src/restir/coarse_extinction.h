@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "restir/float8.h"
+#include "core/float8.h"
 #include "restir/smoke_cells.h"
 
 namespace mote {

@@ -30,6 +30,9 @@ Share share_of(const uint16_t* cdf, uint32_t count, uint32_t i)
     return {static_cast<double>(lo), static_cast<double>(hi - lo)};
 }
 
+/// Choices that go down the tree together.
+constexpr size_t side_by_side = 16;
+
 constexpr uint16_t whole = 65535;
 constexpr int everywhere_nodes[1] = {0};
 
@@ -76,42 +79,92 @@ double LightCells::left_share(const LightCluster& node, int index, Vec3 x) const
     const float a = left.power * right2 * towards(left, x, left2);
     const float b = right.power * left2 * towards(right, x, right2);
     const float known = a + b > 0.0f && a + b < infinity ? a / (a + b) : 0.5f;
-    const float by_count =
-        static_cast<float>(left.end - left.begin) / static_cast<float>(node.end - node.begin);
-    return static_cast<double>(0.98f * known + 0.02f * by_count);
+    return static_cast<double>(0.98f * known + 0.01f);  // both sides have as many lights
+}
+
+LightCells::Descent LightCells::enter(const Row& row, double u)
+{
+    const double scaled = 65536.0 * (u > 0.0 ? std::min(u, 1.0 - 0x1p-53) : 0.0);
+    const uint32_t i = count_up_to(row.cdf, row.count, static_cast<uint16_t>(scaled));
+    const Share share = share_of(row.cdf, row.count, i);
+    return {row.nodes[i], (scaled - share.lo) / share.size, share.size * quantum};
+}
+
+void LightCells::step(const LightCluster& node, Vec3 x, Descent& d) const
+{
+    const double left = left_share(node, d.index, x);
+    const bool goes_left = d.rest < left;
+    // Without branches: which way it goes cannot be foretold.
+    const double share = goes_left ? left : 1.0 - left;
+    d.rest = (d.rest - (goes_left ? 0.0 : left)) / share;
+    d.pmf *= share;
+    d.index = goes_left ? d.index + 1 : node.right;
+}
+
+LightPick LightCells::pick_within(const LightCluster& leaf, const Descent& d) const
+{
+    auto place = static_cast<size_t>(leaf.begin);
+    double pmf = d.pmf;
+    if (leaf.end - leaf.begin > 1) {
+        const double* sums = clusters_.share_sum.data();
+        const double inside = sums[leaf.end] - sums[leaf.begin];
+        const double goal = sums[leaf.begin] + d.rest * inside;
+        const double* found = std::upper_bound(sums + leaf.begin + 1, sums + leaf.end, goal);
+        place = static_cast<size_t>(found - sums - 1);
+        pmf *= (sums[place + 1] - sums[place]) / inside;
+    }
+    return {static_cast<int>(place), static_cast<float>(pmf)};
+}
+
+void LightCells::sample(Vec3 x, std::span<const double> u, std::span<LightPick> out) const
+{
+    if (clusters_.ids.size() < 2) {
+        const bool is_alone = clusters_.ids.size() == 1;
+        std::fill(out.begin(), out.end(),
+                  is_alone ? LightPick{clusters_.ids[0], 1.0f} : LightPick{});
+        return;
+    }
+    const LightCluster* nodes = clusters_.nodes.data();
+    const Row row = row_at(x);
+    for (size_t count = 0; !out.empty(); u = u.subspan(count), out = out.subspan(count)) {
+        count = std::min(side_by_side, out.size());
+        Descent descents[side_by_side];
+        for (size_t i = 0; i < count; ++i) descents[i] = enter(row, u[i]);
+        // All a step each, so that the next nodes are on their way from memory meanwhile.
+        for (bool goes_on = true; goes_on;) {
+            goes_on = false;
+            for (size_t i = 0; i < count; ++i) {
+                Descent& d = descents[i];
+                const LightCluster& node = nodes[d.index];
+                if (node.is_leaf()) continue;
+                goes_on = true;
+                step(node, x, d);
+                const LightCluster& next = nodes[d.index];
+                __builtin_prefetch(&next + 1);
+                if (!next.is_leaf()) __builtin_prefetch(nodes + next.right);
+            }
+        }
+        const double* sums = clusters_.share_sum.data();
+        constexpr int per_line = 64 / sizeof(double);
+        for (size_t i = 0; i < count; ++i) {
+            const LightCluster& leaf = nodes[descents[i].index];
+            for (int k = leaf.begin; k <= leaf.end; k += per_line) __builtin_prefetch(sums + k);
+        }
+        for (size_t i = 0; i < count; ++i) {
+            out[i] = pick_within(nodes[descents[i].index], descents[i]);
+            __builtin_prefetch(clusters_.ids.data() + out[i].light);
+        }
+        for (size_t i = 0; i < count; ++i) {
+            out[i].light = clusters_.ids[static_cast<size_t>(out[i].light)];
+        }
+    }
 }
 
 LightPick LightCells::sample(Vec3 x, double u) const
 {
-    if (clusters_.ids.empty()) return {};
-    if (clusters_.ids.size() == 1) return {clusters_.ids[0], 1.0f};
-    const Row row = row_at(x);
-    const double scaled = 65536.0 * (u > 0.0 ? std::min(u, 1.0 - 0x1p-53) : 0.0);
-    const uint32_t i = count_up_to(row.cdf, row.count, static_cast<uint16_t>(scaled));
-    const Share share = share_of(row.cdf, row.count, i);
-    double pmf = share.size * quantum;
-    double rest = (scaled - share.lo) / share.size;
-    // What is left of u goes down the tree from here.
-    int index = row.nodes[i];
-    const LightCluster* node = &clusters_.nodes[static_cast<size_t>(index)];
-    while (!node->is_leaf()) {
-        const double left = left_share(*node, index, x);
-        const bool goes_left = rest < left;
-        rest = goes_left ? rest / left : (rest - left) / (1.0 - left);
-        pmf *= goes_left ? left : 1.0 - left;
-        index = goes_left ? index + 1 : node->right;
-        node = &clusters_.nodes[static_cast<size_t>(index)];
-    }
-    size_t place = static_cast<size_t>(node->begin);
-    if (node->end - node->begin > 1) {
-        const double* sums = clusters_.share_sum.data();
-        const double inside = sums[node->end] - sums[node->begin];
-        const double goal = sums[node->begin] + rest * inside;
-        const double* found = std::upper_bound(sums + node->begin + 1, sums + node->end, goal);
-        place = static_cast<size_t>(found - sums - 1);
-        pmf *= (sums[place + 1] - sums[place]) / inside;
-    }
-    return {clusters_.ids[place], static_cast<float>(pmf)};
+    LightPick pick;
+    sample(x, {&u, 1}, {&pick, 1});
+    return pick;
 }
 
 float LightCells::pmf(int light, Vec3 x) const

@@ -15,6 +15,11 @@ constexpr int candidates_per_lamp = 4;
 /// dark must not become rare and bright.
 constexpr float least_known = 0.25f;
 
+/// Steps of a lattice that fills the square of the first two numbers evenly however many are taken
+/// (powers of 1/1.3247, after Roberts 2018, "The Unreasonable Effectiveness of Quasirandom
+/// Sequences"), and by golden ratio the third.
+const Vec3 lattice_step(0.75487767f, 0.56984029f, 0.61803399f);
+
 /// How many candidates of each kind a surface draws.
 struct Counts {
     int local = 0;
@@ -37,6 +42,17 @@ Counts counts_for(const FrameDomain& frame)
     n.bsdf = std::max(n.bsdf, environment_rays_of(frame.params));
     if (environment->map) n.environment = std::max(1, environment_rays_of(frame.params) / 2);
     return n;
+}
+
+/// Asks memory for what sampling a light takes.
+void prefetch_light(const FrameDomain& frame, int light)
+{
+    const auto i = static_cast<size_t>(light);
+    __builtin_prefetch(frame.lights.data() + i);
+    if (i >= frame.scene->lights.size()) return;  // a volume that glows
+    const auto* lamp = reinterpret_cast<const char*>(frame.scene->lights.data() + i);
+    __builtin_prefetch(lamp);
+    __builtin_prefetch(lamp + sizeof(Light) - 1);
 }
 
 /// Draws a surface's candidates, one kind after the other.
@@ -78,11 +94,22 @@ struct Drawing {
 
     void local() const
     {
-        const double u_light = n.local > 0 ? uniform_double(rng) : 0.0;
+        if (n.local == 0) return;
+        const double u_light = uniform_double(rng);
+        double u[256];  // as many as params.surface.light_candidates may be
+        LightPick picks[256];
+        const auto count = static_cast<size_t>(n.local);
         for (int i = 0; i < n.local; ++i) {
-            double u = u_light + 0.6180339887498949 * i;  // golden-ratio steps, as in the volume
-            u -= std::floor(u);
-            const LightPick pick = frame.caches->cells->sample(domain.v.p, u);
+            u[i] = u_light + 0.6180339887498949 * i;  // golden-ratio steps, as in the volume
+            u[i] -= std::floor(u[i]);
+        }
+        frame.caches->cells->sample(domain.v.p, {u, count}, {picks, count});
+        // Among many lights each is a wait for memory: all of them at once.
+        for (size_t i = 0; i < count; ++i) {
+            if (picks[i].light >= 0) prefetch_light(frame, picks[i].light);
+        }
+        for (size_t i = 0; i < count; ++i) {
+            const LightPick& pick = picks[i];
             if (pick.light >= 0 && pick.pmf > 0.0f) add_point(pick.light, n.local, pick.pmf);
         }
     }
@@ -109,8 +136,12 @@ struct Drawing {
 
     void directions() const
     {
+        const Vec3 base = n.bsdf > 0 ? rng.uniform3() : Vec3(0.0f);
         for (int i = 0; i < n.bsdf; ++i) {
-            const auto sample = sample_bsdf(domain.v, domain.wo, rng.uniform3());
+            // A shifted lattice spreads directions evenly; each alone is as good as random.
+            const Vec3 shifted = base + static_cast<float>(i) * lattice_step;
+            const Vec3 numbers = glm::min(shifted - glm::floor(shifted), Vec3(one_minus_epsilon));
+            const auto sample = sample_bsdf(domain.v, domain.wo, numbers);
             const float u = rng.uniform();
             if (!sample) continue;
             const Ray ray{ray_origin(domain.v, sample->wi), sample->wi, domain.time};

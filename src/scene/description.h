@@ -114,7 +114,7 @@ struct LightDescription {
     Spectrum color{1.0f};          ///< multiplies strength
     float strength = 1.0f;         ///< point: [W/sr]; distant: [W/m^2]; others: [W/(m^2 sr)]
     bool two_sided = false;        ///< quad
-    std::string image;             ///< environment: .exr, .hdr or .png file
+    std::string image;             ///< environment: .exr, .hdr, .png or .jpg file
     int count = 1;                 ///< point, sphere: this many copies scattered over `spread`
     Vec3 spread{0.0f};             ///< edges of the box around `position` for the copies [m]
     uint32_t seed = 1;             ///< of the scattering

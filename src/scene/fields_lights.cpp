@@ -80,7 +80,7 @@ void describe(FieldVisitor& v, LightDescription& light)
           light.two_sided);
     visit(v,
           {.key = "image",
-           .doc = "Latitude-longitude picture (.exr, .hdr, .png), multiplied by "
+           .doc = "Latitude-longitude picture (.exr, .hdr, .png, .jpg), multiplied by "
                   "colour and strength",
            .also = "map file texture",
            .used_by = "environment"},

@@ -9,7 +9,7 @@ void visit_files(FieldVisitor& v, MaterialFiles& files)
 {
     visit(v,
           {.key = "color_texture",
-           .doc = "Picture (.png, .exr, .hdr) that multiplies `color`, by the mesh's texture "
+           .doc = "Picture (.png, .jpg, .exr, .hdr) that multiplies `color`, by the mesh's texture "
                   "coordinates; repeated without end",
            .also = "texture map base_color_texture albedo_texture diffuse_texture"},
           files.color);

@@ -98,6 +98,12 @@ void describe(FieldVisitor& v, RestirParams& restir)
                   "and fast, but biased by the light caches' coarseness (measured: 1 % on a plume "
                   "of optical depth 8, 10 % at 40, more in smoke of a few voxels)"},
           restir.corrections);
+    visit(v,
+          {.key = "edge_strata",
+           .doc = "Where a pixel sees edges of surfaces or lamps, camera rays per pass: the square "
+                  "of this. Rays that look alike share one sample of light",
+           .range = between(1, 16)},
+          restir.edge_strata);
     visit_choice(v,
                  {.key = "shift",
                   .doc = "What a reused sample keeps: its random numbers, its place in the moving "

@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
+#include "core/box_tree.h"
 #include "scene/light.h"
-#include "scene/light_tree.h"
 
 namespace mote {
 
@@ -27,7 +27,7 @@ class LampSurfaces {
 
   private:
     std::vector<int> few_;  ///< tried one by one; if they are more, they are in the tree
-    LightTree tree_;
+    BoxTree tree_;
 };
 
 }  // namespace mote

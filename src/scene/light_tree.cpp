@@ -29,10 +29,6 @@ int LightTree::build(std::vector<Item>& items, size_t begin, size_t end, int par
     if (end - begin == 1) {
         const Item& item = items[begin];
         nodes_.back().bounds = item.bounds;
-        // Boxes of flat lights must be met by rays that touch them to within rounding.
-        const Vec3 size = glm::max(glm::abs(item.bounds.lo), glm::abs(item.bounds.hi));
-        nodes_.back().bounds.lo -= 1e-6f * size;
-        nodes_.back().bounds.hi += 1e-6f * size;
         nodes_.back().power = item.power;
         nodes_.back().id = item.id;
         leaf_of_id_[static_cast<size_t>(item.id)] = index;

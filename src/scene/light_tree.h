@@ -39,10 +39,6 @@ class LightTree {
     /// Power over squared distance of everything together [W/m^2].
     [[nodiscard]] double importance(Vec3 x) const;
 
-    /// Calls f(id) for every light whose bounds the ray meets.
-    template <class F>
-    void for_each_on_ray(const Ray& ray, F&& f) const;
-
     [[nodiscard]] bool is_empty() const { return nodes_.empty(); }
 
   private:
@@ -59,26 +55,5 @@ class LightTree {
     std::vector<Node> nodes_;
     std::vector<int> leaf_of_id_;
 };
-
-template <class F>
-void LightTree::for_each_on_ray(const Ray& ray, F&& f) const
-{
-    if (nodes_.empty()) return;
-    int stack[64];  // the tree is balanced: its depth is at most log2(lights) + 1
-    int top = 0;
-    stack[top++] = 0;
-    while (top > 0) {
-        const int index = stack[--top];
-        const Node& node = nodes_[static_cast<size_t>(index)];
-        const Interval inside = clip(ray.o, ray.d, node.bounds, {0.0f, infinity});
-        if (inside.t0 > inside.t1) continue;  // flat boxes have intervals of length 0
-        if (node.id >= 0) {
-            f(node.id);
-            continue;
-        }
-        stack[top++] = node.right;
-        stack[top++] = index + 1;
-    }
-}
 
 }  // namespace mote

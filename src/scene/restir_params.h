@@ -112,6 +112,8 @@ struct RestirParams {
     float node_paths = 1.0f;    ///< previews: paths from nodes per pass and pixel of smoke
     float node_spacing = 0.0f;  ///< previews: [m]; 0: by density and pixel size
     bool corrections = true;    ///< false: the closed form alone, a fast biased preview
+    int edge_strata = 4;        ///< camera rays per pass where a pixel sees edges or lamps: this
+                                ///< squared, [1, 16]
     ShiftKind shift = ShiftKind::RandomNumbers;
     ReuseMis mis = ReuseMis::Auto;
     TargetVisibility visibility = TargetVisibility::Exact;

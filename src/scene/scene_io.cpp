@@ -44,7 +44,8 @@ std::string read_text(const std::string& path)
 void refuse_other_kinds(const std::string& path)
 {
     const std::string extension = fs::path(path).extension().string();
-    for (const char* other : {".vdb", ".ply", ".csv", ".npy", ".exr", ".hdr", ".png"}) {
+    for (const char* other :
+         {".vdb", ".ply", ".csv", ".npy", ".exr", ".hdr", ".png", ".jpg", ".jpeg"}) {
         if (extension != other) continue;
         throw Error(ExitCode::Input, fmt::format("{}: not a scene; scenes are .toml or .json files "
                                                  "that name such files, see scenes/README.md",

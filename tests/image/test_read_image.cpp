@@ -114,7 +114,7 @@ TEST(ReadImage, OnlyListedFormatsByNameAndContent)
     for (const char* name : {"a.tga", "a.psd", "a.vdb", "a", "a.png.mp4"}) {
         write_bytes(folder.file(name), png);
         expect_error([&] { (void)read_image(folder.file(name)); }, ExitCode::Input,
-                     {name, "only .exr, .hdr and .png"});
+                     {name, "only .exr, .hdr, .png and .jpg"});
     }
     expect_error([&] { (void)read_image(folder.file("none.hdr")); }, ExitCode::Input,
                  {"none.hdr", "No such file"});

@@ -47,14 +47,14 @@ TEST(ReadStoredImage, SixteenBitsAndExrComeAsFloats)
     EXPECT_FALSE(stores_srgb({folder.file("a.exr"), {}}));
 }
 
-TEST(ReadStoredImage, InsideOfOtherFilesThereIsPngAlone)
+TEST(ReadStoredImage, InsideOfOtherFilesThereArePngAndJpegAlone)
 {
-    const std::vector<uint8_t> jpeg = {0xff, 0xd8, 0xff, 0xe0, 0, 0, 0, 0, 0, 0};
+    const std::vector<uint8_t> webp = {'R', 'I', 'F', 'F', 0, 0, 0, 0, 'W', 'E', 'B', 'P'};
     expect_error(
         [&] {
-            (void)read_stored_image({"a.glb: image 1", jpeg});
+            (void)read_stored_image({"a.glb: image 1", webp});
         },
-        ExitCode::Input, {"a.glb: image 1", "only PNG"});
+        ExitCode::Input, {"a.glb: image 1", "only PNG and JPEG"});
     std::vector<uint8_t> damaged = test::rgba_png;
     damaged.resize(damaged.size() / 2);
     expect_error(

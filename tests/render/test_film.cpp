@@ -97,6 +97,51 @@ TEST(Film, SamplesThatAreNotFiniteCountAsBlack)
     EXPECT_FLOAT_EQ(pixel.mean().x, 2.0f);
 }
 
+TEST(Film, PartsCountByTheirWeights)
+{
+    FilmSample wall;
+    wall.weight = 0.25f;
+    wall.surface_direct = Spectrum(4.0f);
+    wall.transmittance = 0.0f;
+    wall.has_surface = true;
+    wall.normal = Vec3(0.0f, 0.0f, 1.0f);
+    wall.collided = true;
+    wall.on_surface = true;
+    wall.depth = 3.0f;
+    wall.albedo = Spectrum(0.8f);
+    wall.exact_rays = 2.0f;
+    FilmSample sky;
+    sky.weight = 0.75f;
+    sky.background = Spectrum(0.4f);
+    sky.exact_rays = 1.0f;
+    PixelFilm pixel;
+    const FilmSample parts[] = {sky, wall};
+    EXPECT_TRUE(pixel.add(parts));
+    EXPECT_TRUE(pixel.add(parts));
+    EXPECT_EQ(pixel.count(), 2);
+    EXPECT_FLOAT_EQ(pixel.mean().x, 1.3f);
+    EXPECT_FLOAT_EQ(pixel.variance_of_mean().x, 0.0f);
+    EXPECT_FLOAT_EQ(pixel.alpha(), 0.25f);
+    const auto layer = [&](Aov aov) {
+        float values[3] = {};
+        pixel.layer(aov, values);
+        return Vec3(values[0], values[1], values[2]);
+    };
+    EXPECT_FLOAT_EQ(layer(Aov::Direct).x, 1.0f);
+    EXPECT_FLOAT_EQ(layer(Aov::Background).y, 0.3f);
+    EXPECT_FLOAT_EQ(layer(Aov::Normal).z, 1.0f);
+    EXPECT_FLOAT_EQ(layer(Aov::Albedo).x, 0.2f);
+    EXPECT_FLOAT_EQ(layer(Aov::Z).x, 3.0f);
+    EXPECT_FLOAT_EQ(layer(Aov::Cost).x, 3.0f);  // rays, whatever they stand for
+    const FilmSample bad[] = {sky, [&] {
+                                  FilmSample s = wall;
+                                  s.direct.x = std::numeric_limits<float>::quiet_NaN();
+                                  return s;
+                              }()};
+    EXPECT_FALSE(pixel.add(bad));
+    EXPECT_EQ(pixel.count(), 3);
+}
+
 TEST(Film, DepthsOfCollisionsOnly)
 {
     PixelFilm pixel;

@@ -94,7 +94,9 @@ SurfaceBias measure_surface_bias(const std::vector<Scene>& frames, const FrameCa
         }
         return layer_of(image, "direct");
     };
-    RestirParams off = params;
+    RestirParams reusing = params;
+    reusing.edge_strata = 1;  // further parts of pixels with edges reuse nothing: no bias to see
+    RestirParams off = reusing;
     off.reuse = ReuseMode::Off;
     RunningStats added;
     RunningStats own;
@@ -103,7 +105,7 @@ SurfaceBias measure_surface_bias(const std::vector<Scene>& frames, const FrameCa
     BatchSums colors(batches, std::vector<double>(3 * pixels));
     for (int run = 0; run < runs; ++run) {
         render.seed = 1 + static_cast<uint32_t>(run);
-        const std::vector<Spectrum> reused = last_frame(params, first);
+        const std::vector<Spectrum> reused = last_frame(reusing, first);
         rays.add(static_cast<double>(stats.tracking.surface_rays) / static_cast<double>(pixels));
         const std::vector<Spectrum> plain = last_frame(off, frames.size() - 1);
         const auto batch = static_cast<size_t>(run % batches);

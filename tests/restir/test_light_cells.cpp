@@ -36,6 +36,25 @@ TEST(LightCells, SampleReturnsTheProbabilityThatPmfTells)
     }
 }
 
+TEST(LightCells, ManyAtOnceAreThoseOneByOne)
+{
+    Rng rng(6, 0, Stream::Test, 0, 0);
+    for (const int count : {0, 1, 2, 30, 40000}) {
+        const LightCells cells(test::clumpy_media(), test::random_lights(count), test_eye);
+        for (uint32_t k = 0; k < 20; ++k) {
+            const Vec3 x = k == 0 ? Vec3(5.0f) : test::some_point(k);
+            double u[37];
+            LightPick picks[37];
+            for (double& v : u) v = static_cast<double>(rng.uniform());
+            cells.sample(x, u, picks);
+            for (int i = 0; i < 37; ++i) {
+                EXPECT_EQ(picks[i].light, cells.sample(x, u[i]).light);
+                EXPECT_EQ(picks[i].pmf, cells.sample(x, u[i]).pmf);
+            }
+        }
+    }
+}
+
 /// Z of 100,000 samples at x against the probabilities, those of `told` if given.
 double sampling_z(const LightCells& cells, int count, Vec3 x, const LightCells& told)
 {

@@ -1,7 +1,7 @@
 // What the light cells are made of: approximations, coarse optical depths, light cuts.
 #include <gtest/gtest.h>
 
-#include "restir/float8.h"
+#include "core/float8.h"
 #include "restir/light_cells_scene.h"
 #include "restir/light_cut.h"
 

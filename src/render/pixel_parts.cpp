@@ -1,0 +1,73 @@
+#include "render/pixel_parts.h"
+
+#include "render/seen_look.h"
+
+namespace mote {
+namespace {
+
+/// Rays that look alike.
+struct Group {
+    SeenLook look;
+    int count = 0;
+    bool has_main = false;
+    Ray chosen;  ///< each of them with the same probability
+};
+
+/// Which stratum of n along an axis a place within a pixel lies in.
+int stratum(float place, int n)
+{
+    return std::clamp(static_cast<int>(place * static_cast<float>(n)), 0, n - 1);
+}
+
+}  // namespace
+
+void split_pixel(const PassInputs& inputs, const PassKey& key, const Ray& main,
+                 std::vector<PixelPart>& parts)
+{
+    parts.assign(1, {main, 1.0f});
+    const int strata = inputs.split.size() > 0 ? inputs.split.at(key.x, key.y) : 1;
+    if (strata < 2) return;
+    const Scene& scene = *inputs.domain.scene;
+    const Camera& camera = scene.camera;
+    const Seeable seeable{scene.surfaces.get(), scene.lights, *inputs.domain.lamp_surfaces};
+    const Vec2 corner(key.x, key.y);
+    const Vec2 main_place = camera_film(inputs, key) - corner;
+    const int main_x = stratum(main_place.x, strata);
+    const int main_y = stratum(main_place.y, strata);
+    Rng rng = pass_rng(inputs, key, Stream::PixelRays);
+    Group groups[most_parts];
+    int count = 0;
+    SeenLook look;
+    // Groups must not depend on which of the rays is the main one: strata come in order.
+    for (int sy = 0; sy < strata; ++sy) {
+        for (int sx = 0; sx < strata; ++sx) {
+            const bool is_main = sx == main_x && sy == main_y;
+            Ray ray = main;
+            if (!is_main) {
+                const Vec2 film =
+                    corner + (Vec2(sx, sy) + rng.uniform2()) / static_cast<float>(strata);
+                const Vec2 lens = camera.lens_radius > 0.0f ? rng.uniform2() : Vec2(0.5f);
+                const float time = inputs.domain.has_motion ? rng.uniform() : 0.0f;
+                ray = generate_ray(camera, film, lens, time);
+            }
+            look = look_along(seeable, ray, &look);
+            int g = 0;
+            while (g < count && !looks_alike(groups[g].look, look)) ++g;
+            if (g == count && count < most_parts) groups[count++].look = look;
+            Group& group = groups[std::min(g, most_parts - 1)];  // the rest are one
+            group.has_main |= is_main;
+            if (rng.uniform() * static_cast<float>(++group.count) < 1.0f) group.chosen = ray;
+        }
+    }
+    const float share = 1.0f / static_cast<float>(strata * strata);
+    for (int g = 0; g < count; ++g) {
+        const float weight = share * static_cast<float>(groups[g].count);
+        if (groups[g].has_main) {
+            parts[0].weight = weight;
+        } else {
+            parts.push_back({groups[g].chosen, weight});
+        }
+    }
+}
+
+}  // namespace mote

@@ -1,0 +1,66 @@
+#include "render/seen_look.h"
+
+#include "surfaces/bsdf.h"
+
+namespace mote {
+namespace {
+
+/// Emission that differs by less of the brighter one counts as one.
+constexpr float like_emission = 0.25f;
+/// Cosine between normals above which a surface counts as smooth.
+constexpr float like_normals = 0.9f;
+/// Distance between parallel planes, in distances from the camera, from which they are two.
+constexpr float apart = 0.02f;
+
+Vec3 geometric_normal(const Surfaces& surfaces, const SurfaceHit& hit, float time)
+{
+    const auto object = static_cast<size_t>(hit.object);
+    const WorldTriangle triangle =
+        world_triangle(surfaces.bvh->frame_at(object, time), surfaces.mesh(hit.object),
+                       static_cast<size_t>(hit.triangle));
+    const Vec3 n = glm::cross(triangle.edge_u, triangle.edge_v);
+    const float length = glm::length(n);
+    return length > 0.0f ? n / length : n;
+}
+
+}  // namespace
+
+SeenLook look_along(const Seeable& scene, const Ray& ray, const SeenLook* near)
+{
+    SeenLook look;
+    if (scene.surfaces) {
+        const Surfaces& surfaces = *scene.surfaces;
+        const std::optional<SurfaceHit> hit = intersect(surfaces, ray, {0.0f, infinity});
+        if (hit) {
+            look.object = hit->object;
+            look.triangle = hit->triangle;
+            look.t = hit->t;
+            look.p = ray.at(hit->t);
+            // What turns while the shutter is open turns little: normals are compared roughly.
+            const bool is_same =
+                near && near->object == hit->object && near->triangle == hit->triangle;
+            look.n = is_same ? near->n : geometric_normal(surfaces, *hit, ray.time);
+            if (surfaces.material(hit->object).is_emissive()) {
+                look.Le = surface_emission(make_vertex(surfaces, *hit, ray.time), -ray.d);
+            }
+        }
+    }
+    scene.lamps.for_each_on_ray(ray, [&](int index) {
+        const Light& light = scene.lights[static_cast<size_t>(index)];
+        const std::optional<LightHit> hit = hit_light(light, ray.o, ray.d);
+        if (hit && hit->distance <= look.t) look.Le += hit->Le;
+    });
+    return look;
+}
+
+bool looks_alike(const SeenLook& a, const SeenLook& b)
+{
+    const float brightest = std::max(max_component(a.Le), max_component(b.Le));
+    if (max_component(glm::abs(a.Le - b.Le)) > like_emission * brightest) return false;
+    if (a.object != b.object) return false;
+    if (a.object < 0 || a.triangle == b.triangle) return true;
+    if (std::abs(glm::dot(a.n, b.n)) < like_normals) return false;
+    return std::abs(glm::dot(a.p - b.p, a.n)) <= apart * std::min(a.t, b.t);
+}
+
+}  // namespace mote
