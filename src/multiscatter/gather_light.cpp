@@ -8,6 +8,9 @@
 namespace mote {
 namespace {
 
+/// Keeps ratios of transmittances finite.
+constexpr float most_excess = 80.0f;
+
 /// A draw among the vertices found.
 struct Draw {
     int j = -1;        ///< -1: nothing arrives
@@ -67,7 +70,7 @@ class Gatherer {
         optical_depths(context_.trace.scene.media, queries_, taus, context_.counts);
         for (size_t i = 0; i < checks_.size(); ++i) {
             const Check& check = checks_[i];
-            const float ratio = std::exp(check.log_excess - taus[i]);
+            const float ratio = std::exp(std::min(check.log_excess - taus[i], most_excess));
             const Spectrum missing = check.light * (ratio - 1.0f);
             PathVertex& v = level_.vertices[static_cast<size_t>(check.vertex)];
             if (is_first()) {

@@ -11,6 +11,9 @@
 namespace mote {
 namespace {
 
+/// Optical depths beyond which floats know no transmittance.
+constexpr float deepest = 104.0f;
+
 /// How one group's paths are sent.
 struct GroupScratch {
     LaneGroup lanes;
@@ -204,7 +207,7 @@ void measure_excess(const SharingContext& context, const PathLevel& level, PathL
     for (size_t j = 0; j < taus.size(); ++j) {
         PathVertex& v = next.vertices[j];
         const float assumed = assumed_transmittance(context.extinction, v.x, queries[j].o);
-        v.log_excess = std::log(assumed) + taus[j];
+        v.log_excess = std::log(assumed) + std::min(taus[j], deepest);
     }
 }
 

@@ -188,7 +188,7 @@ TEST(GuessedRaysStat, ImagesAgreeWithThePathTracer)
     FrameHistory history;
     FrameStats stats;
     (void)render_frame(test.scene, render, {}, history, nullptr, stats);
-    EXPECT_GT(stats.coarse_rays, 4 * stats.light_rays / 3);
+    EXPECT_GT(stats.coarse_rays, stats.light_rays);
     const RunComparison comparison =
         compare_runs(test::render_runs(test, render, effort.runs, 1), reference);
     EXPECT_GT(comparison.p, test::alarm) << test::summary(test.name, comparison);
