@@ -26,8 +26,8 @@ struct PathSharing {
 /// What ReSTIR's spatial reuse of suffixes does with reservoirs (Lin et al. 2021, 2022), for whole
 /// groups at once, with all samples instead of one; Deng et al. 2021 ("Path Graphs") gather alike,
 /// but iterate to a biased fixed point. Precondition: is_still_but_for_camera, as the events'
-/// rays may belong to different times. Cost: for each first vertex a path and about 3 ns for each
-/// of the group. Memory: about 0.6 KB per first vertex of tiles under way.
+/// rays may belong to different times. Cost: for each first vertex a path and about 5 ns for each
+/// of the group. Memory: about 1 KB per first vertex of tiles under way.
 void share_paths(const TraceContext& context, const CoarseExtinction& extinction,
                  const PathSharing& sharing, std::vector<PathVertex> first, Rng& rng,
                  std::span<Spectrum> light, WalkCounts& counts, bool& truncated);

@@ -3,9 +3,9 @@
 #include <span>
 #include <vector>
 
+#include "core/float8.h"
 #include "multiscatter/path_vertex.h"
 #include "restir/coarse_extinction.h"
-#include "core/float8.h"
 
 namespace mote {
 

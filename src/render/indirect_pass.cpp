@@ -56,11 +56,11 @@ PathVertex first_vertex(const ScatterEvent& event, Spectrum weight, int owner)
 
 }  // namespace
 
-bool shares_paths(const FrameDomain& frame, const PathTracerParams& path)
+bool shares_paths(const Scene& scene, const RenderDescription& render)
 {
-    const RestirParams& params = frame.params;
-    return params.indirect != IndirectLight::Paths && params.corrections && path.max_bounces > 1 &&
-           frame.caches->extinction && is_still_but_for_camera(*frame.scene);
+    const RestirParams& params = render.restir;
+    return params.indirect != IndirectLight::Paths && params.corrections &&
+           render.path.max_bounces > 1 && is_still_but_for_camera(scene);
 }
 
 void add_indirect(const PassInputs& inputs, const PassKey& key, const PixelDomain& domain,

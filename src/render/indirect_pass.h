@@ -7,8 +7,8 @@
 
 namespace mote {
 
-/// Whether the frame's pixels share paths of many events.
-[[nodiscard]] bool shares_paths(const FrameDomain& frame, const PathTracerParams& path);
+/// Whether a frame's pixels share paths of many events; its light caches then need mean extinction.
+[[nodiscard]] bool shares_paths(const Scene& scene, const RenderDescription& render);
 
 /// Light scattered twice and more along a pixel's ray, by the path tracer from exact first events
 /// on: stratified free flights, each worth the share of light that collides; where a surface ends

@@ -69,9 +69,8 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
                    FrameHistory::Impl& history, Film& film, FrameStats& stats)
 {
     const double cpu_start = process_cpu_seconds();
-    const bool may_share =
-        render.path.max_bounces > 1 && render.restir.indirect != IndirectLight::Paths;
-    history.caches = make_light_caches(scene, {pixel_passes(render), may_share}, history.caches);
+    const bool shares = shares_paths(scene, render);
+    history.caches = make_light_caches(scene, {pixel_passes(render), shares}, history.caches);
     const bool keeps_history = uses_history(render);
     FrameDomain domain = make_frame_domain(
         share(scene, keeps_history), history.caches,
@@ -95,7 +94,7 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
                             aovs,
                             lights,
                             nodes ? &*nodes : nullptr,
-                            shares_paths(domain, render.path),
+                            shares && history.caches->extinction,
                             find_split_pixels(scene, domain.params.edge_strata)};
     PassCounts counts;
     bool finished = false;

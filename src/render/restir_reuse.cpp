@@ -1,10 +1,10 @@
 #include "render/restir_reuse.h"
-#include "render/indirect_pass.h"
 
 #include <algorithm>
 #include <atomic>
 #include <mutex>
 
+#include "render/indirect_pass.h"
 #include "render/part_pass.h"
 #include "restir/surface_reuse.h"
 

@@ -179,26 +179,36 @@ TEST(PathSharingStat, WrongWaysAreFoundOut)
     EXPECT_LT(judge(Mistake::OneEventTooMany), alarm);
 }
 
-/// Sharing is worth its while: what one vertex gets has less noise than its own path.
+/// What sharing is for: one vertex's light has less noise than its own path's. Groups of one are
+/// the negative control.
 TEST(PathSharingStat, SharedLightHasLessNoise)
 {
     Sharing sharing(cloud(8.0f, 0.3f), 100, 0.1f);
     const std::vector<PathVertex> few = sharing.first;
-    while (sharing.first.size() < 48) {
-        PathVertex v = few[sharing.first.size() % few.size()];
-        v.x += 1e-3f * Vec3(static_cast<float>(sharing.first.size()));
+    sharing.first.clear();
+    for (size_t i = 0; i < 48; ++i) {
+        PathVertex v = few[i % few.size()];
+        v.x += 1e-3f * Vec3(static_cast<float>(i));
+        v.from = i == 0 ? 0 : 1;
+        v.weight = Spectrum(1.0f);
         sharing.first.push_back(v);
     }
-    RunningStats alone;
-    RunningStats shared;
-    for (uint32_t i = 0; i < 200; ++i) {
-        Rng rng(1, i, Stream::Test, 0, 0);
-        alone.add(static_cast<double>(luminance(sharing.alone(rng))));
-        shared.add(static_cast<double>(luminance(sharing.shared({}, rng))));
-    }
-    // The sum over all 48 has the same number of paths either way; one vertex's light has 48 times
-    // as many. Seen from the sum, sharing must not lose more than a little.
-    EXPECT_LT(estimate_mean(shared).standard_error(), 1.5 * estimate_mean(alone).standard_error());
+    const auto noise = [&](int group_size) {
+        RunningStats stats;
+        for (uint32_t i = 0; i < 300; ++i) {
+            Rng rng(1, i, Stream::Test, 0, 0);
+            std::vector<Spectrum> light(2, Spectrum(0.0f));
+            WalkCounts counts;
+            bool truncated = false;
+            share_paths(sharing.trace(), sharing.extinction, {.group_size = group_size},
+                        sharing.first, rng, light, counts, truncated);
+            stats.add(static_cast<double>(luminance(light[0])));
+        }
+        return estimate_mean(stats).standard_error();
+    };
+    const double alone = noise(1);
+    EXPECT_LT(noise(64), 0.6 * alone);
+    EXPECT_GT(noise(2), 0.6 * alone);
 }
 
 TEST(PathSharing, NothingComesFromNothing)
