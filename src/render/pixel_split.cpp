@@ -63,7 +63,7 @@ class LampMarks {
         if (!(2.0f * radius <= wide_lamp)) return false;
         const Vec2 size(map_.width(), map_.height());
         const Vec2 film = 0.5f * size + scale * Vec2(p.x, -p.y);
-        const Vec2 lo = glm::max(film - radius, Vec2(0.0f));
+        const Vec2 lo = glm::clamp(film - radius, Vec2(0.0f), size);  // film may be huge
         const Vec2 hi = glm::min(film + radius, size - 1.0f);
         // Of one ray's light: brightness squared by the area, here over all pixels alike.
         const float pixels = sqr(1.0f + 2.0f * radius);

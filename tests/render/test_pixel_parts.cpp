@@ -115,6 +115,21 @@ TEST(PixelSplit, CrowdsOfLampsMarkASixteenthAtMost)
     EXPECT_LE(std::count(alone.begin(), alone.end(), uint8_t{4}), 4);
 }
 
+/// Their places on the film are beyond what whole numbers hold.
+TEST(PixelSplit, LampsBesideTheCameraAreFarOffTheFilm)
+{
+    Scene scene;
+    scene.camera.width = 64;
+    scene.camera.height = 64;
+    for (const float z : {-1e-7f, -1e-12f, -1e-30f, 0.0f, 1e-7f}) {
+        for (const Vec2& side : {Vec2(1.0f, 0.0f), Vec2(-1.0f, 0.0f), Vec2(0.0f, 1.0f)}) {
+            scene.lights.push_back(SphereLight{{side.x, side.y, z}, 1e-20f, Spectrum(1.0f)});
+        }
+    }
+    const SplitMap map = find_split_pixels(scene, 4);
+    EXPECT_EQ(std::count(map.begin(), map.end(), uint8_t{4}), 0);
+}
+
 /// Of the candidates on a surface one of each group is kept. Their light adds up to that of all
 /// candidates: on average, and exactly where groups hold one each.
 TEST(SurfaceGroupsStat, WhatIsKeptAddsUpToWhatWasDrawn)
