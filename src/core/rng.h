@@ -43,6 +43,7 @@ enum class Stream : uint32_t {
     SharedPaths,
     LightGuess,
     PixelRays,
+    SeenLamps,
 };
 
 /// Counter-based generator: the n-th number of a stream is a pure function of its key and n, so

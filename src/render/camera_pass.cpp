@@ -2,6 +2,7 @@
 
 #include "render/indirect_pass.h"
 #include "render/motion.h"
+#include "render/seen_lamps.h"
 #include "render/view_depth.h"
 #include "restir/emission_along.h"
 #include "scene/environment.h"
@@ -41,13 +42,15 @@ float transmittance_to(const FrameDomain& frame, const PixelDomain& domain, floa
     return std::exp(-depth_to(frame.scene->media, domain.ray, domain.bins, s));
 }
 
-Spectrum seen_background(const PassInputs& inputs, const PixelDomain& domain, float transmittance)
+Spectrum seen_background(const PassInputs& inputs, const PassKey& key, const PixelDomain& domain,
+                         float transmittance)
 {
     const Scene& scene = *inputs.domain.scene;
     Spectrum sum(0.0f);
     if (scene.environment && !domain.surface) {
         sum += transmittance * environment_radiance(*scene.environment, domain.ray.d);
     }
+    if (has_lamp_rays(inputs, key)) return sum;
     inputs.domain.lamp_surfaces->for_each_on_ray(domain.ray, [&](int index) {
         const Light& light = scene.lights[static_cast<size_t>(index)];
         const std::optional<LightHit> hit = hit_light(light, domain.ray.o, domain.ray.d);
@@ -147,6 +150,15 @@ Ray camera_ray(const PassInputs& inputs, const PassKey& key)
     return generate_ray(camera, film, lens, moves ? pair(numbers, NumberPair::Time).x : 0.0f);
 }
 
+Ray stratum_ray(const PassInputs& inputs, const PassKey& key, int sx, int sy, int strata, Rng& rng)
+{
+    const Camera& camera = inputs.domain.scene->camera;
+    const Vec2 film =
+        Vec2(key.x, key.y) + (Vec2(sx, sy) + rng.uniform2()) / static_cast<float>(strata);
+    const Vec2 lens = camera.lens_radius > 0.0f ? rng.uniform2() : Vec2(0.5f);
+    return generate_ray(camera, film, lens, inputs.domain.has_motion ? rng.uniform() : 0.0f);
+}
+
 std::optional<FilmSample> uniform_tile(const PassInputs& inputs, const Tile& tile)
 {
     const Scene& scene = *inputs.domain.scene;
@@ -177,7 +189,7 @@ void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray, in
         // The bins may end before the media do.
         sample.optical_depth = optical_depth(scene.media, ray, {0.0f, media.t_end()});
     }
-    sample.background = seen_background(inputs, media, sample.transmittance);
+    sample.background = seen_background(inputs, key, media, sample.transmittance);
     if (frame.has_emission) {
         Rng rng = pass_rng(inputs, key, Stream::Shade);
         sample.emission = emission_along(frame, media, rng);

@@ -37,7 +37,7 @@ struct PassInputs {
     const LightSampler& lights;           ///< for paths of many events; empty if there are none
     const ScatterNodes* nodes = nullptr;  ///< for previews; null: none
     bool shares_paths = false;            ///< of many events: see shares_paths()
-    SplitMap split{};                     ///< empty: no pixel takes several camera rays
+    PixelSplits split{};                  ///< where pixels take several camera rays
 };
 
 /// One pixel's pass: where, and which.
@@ -68,6 +68,10 @@ struct PassCounts {
 
 /// That ray: place on the film, on the lens and in time.
 [[nodiscard]] Ray camera_ray(const PassInputs& inputs, const PassKey& key);
+
+/// A ray of the same pixel through one stratum of `strata` a side.
+[[nodiscard]] Ray stratum_ray(const PassInputs& inputs, const PassKey& key, int sx, int sy,
+                              int strata, Rng& rng);
 
 /// Where a pixel's samples live in a pass: in the media along its ray, and on the surface at its
 /// end.

@@ -1,6 +1,7 @@
 #include "render/part_pass.h"
 
 #include "render/indirect_pass.h"
+#include "render/seen_lamps.h"
 
 namespace mote {
 namespace {
@@ -17,6 +18,7 @@ void PartScratch::clear()
     samples.clear();
     rays.clear();
     surface_rays.clear();
+    lamp_rays.clear();
     first.clear();
 }
 
@@ -66,6 +68,8 @@ void shade_parts(const PassInputs& inputs, const PassKey& key, PartScratch& scra
         sample.direct += value;
         sample.exact_rays += 1.0f;
     });
+    add_seen_lamps(*frame.scene, scratch.lamp_rays, counts.light_rays,
+                   [&](int of) -> FilmSample& { return scratch.samples[static_cast<size_t>(of)]; });
     scratch.surface_rays.trace(*frame.scene, counts.light_rays);
     for (size_t i = 0; i < scratch.surface_rays.size(); ++i) {
         FilmSample& sample = scratch.samples[static_cast<size_t>(scratch.surface_rays.owners[i])];

@@ -12,6 +12,7 @@ struct PartScratch {
     std::vector<FilmSample> samples;  ///< of the parts traced since clear()
     TileRays rays;                    ///< from media, owned by `samples`
     LightRays surface_rays;           ///< from surfaces
+    LightRays lamp_rays;              ///< from the camera, see look_for_lamps()
     std::vector<Candidate> candidates;
     SurfaceChoice choice;
     PassDomain domain;

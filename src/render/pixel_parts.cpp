@@ -25,13 +25,10 @@ void split_pixel(const PassInputs& inputs, const PassKey& key, const Ray& main,
                  std::vector<PixelPart>& parts)
 {
     parts.assign(1, {main, 1.0f});
-    const int strata = inputs.split.size() > 0 ? inputs.split.at(key.x, key.y) : 1;
+    const int strata = inputs.split.parts.size() > 0 ? inputs.split.parts.at(key.x, key.y) : 1;
     if (strata < 2) return;
-    const Scene& scene = *inputs.domain.scene;
-    const Camera& camera = scene.camera;
-    const Seeable seeable{scene.surfaces.get(), scene.lights, *inputs.domain.lamp_surfaces};
-    const Vec2 corner(key.x, key.y);
-    const Vec2 main_place = camera_film(inputs, key) - corner;
+    const Surfaces& surfaces = *inputs.domain.scene->surfaces;
+    const Vec2 main_place = camera_film(inputs, key) - Vec2(key.x, key.y);
     const int main_x = stratum(main_place.x, strata);
     const int main_y = stratum(main_place.y, strata);
     Rng rng = pass_rng(inputs, key, Stream::PixelRays);
@@ -42,15 +39,8 @@ void split_pixel(const PassInputs& inputs, const PassKey& key, const Ray& main,
     for (int sy = 0; sy < strata; ++sy) {
         for (int sx = 0; sx < strata; ++sx) {
             const bool is_main = sx == main_x && sy == main_y;
-            Ray ray = main;
-            if (!is_main) {
-                const Vec2 film =
-                    corner + (Vec2(sx, sy) + rng.uniform2()) / static_cast<float>(strata);
-                const Vec2 lens = camera.lens_radius > 0.0f ? rng.uniform2() : Vec2(0.5f);
-                const float time = inputs.domain.has_motion ? rng.uniform() : 0.0f;
-                ray = generate_ray(camera, film, lens, time);
-            }
-            look = look_along(seeable, ray, &look);
+            const Ray ray = is_main ? main : stratum_ray(inputs, key, sx, sy, strata, rng);
+            look = look_along(surfaces, ray, &look);
             int g = 0;
             while (g < count && !looks_alike(groups[g].look, look)) ++g;
             if (g == count && count < most_parts) groups[count++].look = look;

@@ -18,7 +18,8 @@ inline constexpr int most_parts = 4;
 /// Divides a pixel's pass by what stratified rays through it see: rays that look alike are one
 /// part, of which one ray is followed, any of them as likely as the others; so the parts' mean by
 /// weight is the pixel's. The first part's ray is `main`, which must be camera_ray(inputs, key):
-/// the ray of its stratum. One part where all rays look alike, and where inputs.split has no mark.
+/// the ray of its stratum. One part where all rays look alike, and where inputs.split.parts has no
+/// mark.
 void split_pixel(const PassInputs& inputs, const PassKey& key, const Ray& main,
                  std::vector<PixelPart>& parts);
 

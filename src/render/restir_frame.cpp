@@ -8,6 +8,7 @@
 #include "render/indirect_pass.h"
 #include "render/part_pass.h"
 #include "render/restir_reuse.h"
+#include "render/seen_lamps.h"
 #include "restir/cache_stats.h"
 #include "restir/correction_need.h"
 
@@ -32,6 +33,8 @@ void trace_tile_pass(const PassInputs& inputs, const Tile& tile, uint32_t pass,
             scratch.first.push_back(scratch.traced.samples.size());
             PassKey key{x, y, pass};
             split_pixel(inputs, key, camera_ray(inputs, key), scratch.parts);
+            look_for_lamps(inputs, key, static_cast<int>(scratch.first.back()),
+                           1.0f / scratch.parts[0].weight, scratch.traced.lamp_rays);
             for (const PixelPart& part : scratch.parts) {
                 trace_part(inputs, key, part, scratch.traced, counts);
                 ++key.part;

@@ -6,6 +6,7 @@
 
 #include "render/indirect_pass.h"
 #include "render/part_pass.h"
+#include "render/seen_lamps.h"
 #include "restir/surface_reuse.h"
 
 namespace mote {
@@ -113,6 +114,7 @@ void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, const DomainSto
     const FrameDomain& frame = inputs.domain;
     TileRays corrections;
     LightRays shadows;
+    LightRays lamp_rays;
     std::vector<Candidate> candidates;
     std::vector<CandidateRange> ranges;
     std::vector<FilmSample*> samples;
@@ -139,6 +141,7 @@ void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, const DomainSto
                     others.push_back({pixel_index(x, y), {}});
                 }
             }
+            look_for_lamps(inputs, key, owner, 1.0f / sample.weight, lamp_rays);
             begin_pass(inputs, key, ray, owner, pass_domain, corrections, first_vertices, sample,
                        n);
             if (inputs.render.path.max_bounces == 0) pass_domain.surface.share = 0.0f;
@@ -185,6 +188,8 @@ void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, const DomainSto
         sample.direct += value;
         sample.exact_rays += 1.0f;
     });
+    add_seen_lamps(*frame.scene, lamp_rays, n.light_rays,
+                   [&](int of) -> FilmSample& { return *samples[static_cast<size_t>(of)]; });
     shadows.trace(*frame.scene, n.light_rays);
     for (size_t i = 0; i < shadows.size(); ++i) {
         candidates[static_cast<size_t>(shadows.owners[i])].f = shadows.value(i);

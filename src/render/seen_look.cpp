@@ -25,42 +25,46 @@ Vec3 geometric_normal(const Surfaces& surfaces, const SurfaceHit& hit, float tim
 
 }  // namespace
 
-SeenLook look_along(const Seeable& scene, const Ray& ray, const SeenLook* near)
+SeenLook look_along(const Surfaces& surfaces, const Ray& ray, const SeenLook* near)
 {
     SeenLook look;
-    if (scene.surfaces) {
-        const Surfaces& surfaces = *scene.surfaces;
-        const std::optional<SurfaceHit> hit = intersect(surfaces, ray, {0.0f, infinity});
-        if (hit) {
-            look.object = hit->object;
-            look.triangle = hit->triangle;
-            look.t = hit->t;
-            look.p = ray.at(hit->t);
-            // What turns while the shutter is open turns little: normals are compared roughly.
-            const bool is_same =
-                near && near->object == hit->object && near->triangle == hit->triangle;
-            look.n = is_same ? near->n : geometric_normal(surfaces, *hit, ray.time);
-            if (surfaces.material(hit->object).is_emissive()) {
-                look.Le = surface_emission(make_vertex(surfaces, *hit, ray.time), -ray.d);
-            }
-        }
+    const std::optional<SurfaceHit> hit = intersect(surfaces, ray, {0.0f, infinity});
+    if (!hit) return look;
+    look.object = hit->object;
+    look.triangle = hit->triangle;
+    look.t = hit->t;
+    look.p = ray.at(hit->t);
+    // What turns while the shutter is open turns little: normals are compared roughly.
+    const bool is_same = near && near->object == hit->object && near->triangle == hit->triangle;
+    look.n = is_same ? near->n : geometric_normal(surfaces, *hit, ray.time);
+    if (surfaces.material(hit->object).is_emissive()) {
+        look.Le = surface_emission(make_vertex(surfaces, *hit, ray.time), -ray.d);
     }
-    scene.lamps.for_each_on_ray(ray, [&](int index) {
-        const Light& light = scene.lights[static_cast<size_t>(index)];
-        const std::optional<LightHit> hit = hit_light(light, ray.o, ray.d);
-        if (hit && hit->distance <= look.t) look.Le += hit->Le;
-    });
     return look;
 }
 
 bool looks_alike(const SeenLook& a, const SeenLook& b)
 {
-    const float brightest = std::max(max_component(a.Le), max_component(b.Le));
-    if (max_component(glm::abs(a.Le - b.Le)) > like_emission * brightest) return false;
-    if (a.object != b.object) return false;
+    if (!emits_alike(a.Le, b.Le) || a.object != b.object) return false;
     if (a.object < 0 || a.triangle == b.triangle) return true;
     if (std::abs(glm::dot(a.n, b.n)) < like_normals) return false;
     return std::abs(glm::dot(a.p - b.p, a.n)) <= apart * std::min(a.t, b.t);
+}
+
+Spectrum lamp_light(std::span<const Light> lamps, const LampSurfaces& index, const Ray& ray)
+{
+    Spectrum sum(0.0f);
+    index.for_each_on_ray(ray, [&](int i) {
+        const std::optional<LightHit> hit = hit_light(lamps[static_cast<size_t>(i)], ray.o, ray.d);
+        if (hit) sum += hit->Le;
+    });
+    return sum;
+}
+
+bool emits_alike(Spectrum a, Spectrum b)
+{
+    const float brightest = std::max(max_component(a), max_component(b));
+    return max_component(glm::abs(a - b)) <= like_emission * brightest;
 }
 
 }  // namespace mote

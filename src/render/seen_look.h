@@ -14,22 +14,22 @@ struct SeenLook {
     float t = infinity;  ///< distance of the surface [m]
     Vec3 p{0.0f};        ///< point on it [m]
     Vec3 n{0.0f};        ///< its geometric normal [unit, either side]
-    Spectrum Le{0.0f};   ///< emitted towards the camera, by the surface and by lamps before it
-};
-
-/// What there is to look at: surfaces (null: none), and lamps that rays meet, with their index.
-struct Seeable {
-    const Surfaces* surfaces = nullptr;
-    std::span<const Light> lights;
-    const LampSurfaces& lamps;  ///< of `lights`
+    Spectrum Le{0.0f};   ///< emitted towards the camera by the surface
 };
 
 /// `near`: what a ray beside it sees, which may spare some work; null: unknown. Cost: a ray, and a
 /// shading point where it meets an emissive surface.
-[[nodiscard]] SeenLook look_along(const Seeable& scene, const Ray& ray,
+[[nodiscard]] SeenLook look_along(const Surfaces& surfaces, const Ray& ray,
                                   const SeenLook* near = nullptr);
 
 /// Whether both see about the same: one smooth surface of one brightness, or both none.
 [[nodiscard]] bool looks_alike(const SeenLook& a, const SeenLook& b);
+
+/// What the lamps that a ray meets give off towards its origin. `index`: of `lamps`.
+[[nodiscard]] Spectrum lamp_light(std::span<const Light> lamps, const LampSurfaces& index,
+                                  const Ray& ray);
+
+/// Whether two emissions are about the same.
+[[nodiscard]] bool emits_alike(Spectrum a, Spectrum b);
 
 }  // namespace mote

@@ -4,14 +4,15 @@
 
 #include "core/parallel.h"
 #include "render/frame.h"
+#include "render/lamp_marks.h"
+#include "render/one_pass.h"
 #include "render/pixel_parts.h"
-#include "render/seen_look.h"
-#include "render/surface_pass.h"
-#include "restir/light_caches.h"
 #include "support/surface_scene.h"
 
 namespace mote {
 namespace {
+
+using test::Pass;
 
 constexpr int size = 8;
 
@@ -38,30 +39,6 @@ Scene make_scene(bool has_boards = true)
     return scene;
 }
 
-/// A pass of the scene, ready to be divided.
-struct Pass {
-    Scene scene;
-    RenderDescription render;
-    LightSampler lights;
-    FrameDomain domain;
-    PassInputs inputs;
-
-    Pass(Scene s, int strata, uint32_t seed)
-        : scene(std::move(s)),
-          render(),
-          domain(make_frame_domain({std::shared_ptr<const Scene>(), &scene},
-                                   make_light_caches(scene, {100}, nullptr), render.restir)),
-          inputs{domain, render, {}, lights, nullptr, false, find_split_pixels(scene, strata)}
-    {
-        render.seed = seed;
-    }
-
-    [[nodiscard]] SeenLook look(const Ray& ray) const
-    {
-        return look_along({scene.surfaces.get(), scene.lights, *domain.lamp_surfaces}, ray);
-    }
-};
-
 /// What a ray brings, different for every place on every surface.
 double brought(const Pass& pass, const Ray& ray)
 {
@@ -73,7 +50,7 @@ double brought(const Pass& pass, const Ray& ray)
 TEST(PixelSplit, MarksEdgesAndSmallLampsAlone)
 {
     const Pass pass(make_scene(), 4, 1);
-    const SplitMap& map = pass.inputs.split;
+    const SplitMap& map = pass.inputs.split.parts;
     ASSERT_EQ(map.size(), size_t{size * size});
     EXPECT_EQ(map.at(0, 0), 1);                        // wall
     EXPECT_EQ(map.at(size / 2 - 1, size / 2 - 1), 1);  // amid the board
@@ -82,37 +59,59 @@ TEST(PixelSplit, MarksEdgesAndSmallLampsAlone)
     for (const uint8_t strata : map) marked += strata > 1 ? 1 : 0;
     EXPECT_GE(marked, 6);
     EXPECT_LE(marked, size * size / 3);
-    for (const uint8_t strata : Pass(make_scene(false), 4, 1).inputs.split) EXPECT_EQ(strata, 1);
-    EXPECT_EQ(Pass(make_scene(), 1, 1).inputs.split.size(), 0u);
-    EXPECT_EQ(Pass(Scene(), 4, 1).inputs.split.size(), 0u);
+    for (const uint8_t strata : Pass(make_scene(false), 4, 1).inputs.split.parts)
+        EXPECT_EQ(strata, 1);
+    EXPECT_EQ(Pass(make_scene(), 1, 1).inputs.split.parts.size(), 0u);
+    EXPECT_EQ(Pass(Scene(), 4, 1).inputs.split.parts.size(), 0u);
 }
 
-TEST(PixelSplit, CrowdsOfLampsMarkASixteenthAtMost)
+TEST(PixelSplit, OfCrowdsThoseThatMatterMarkTheirShare)
 {
     Scene scene;
     scene.camera.width = 64;
     scene.camera.height = 64;
+    LampMarks marks(scene.camera, 0.5f);
+    std::vector<Vec3> bright;
     Rng rng(3, 0, Stream::Test, 0, 0);
     for (int i = 0; i < 3000; ++i) {
         const Vec3 p = 2.0f * rng.uniform3() - 1.0f;
-        scene.lights.push_back(
-            SphereLight{{p.x, p.y, p.z - 4.0f}, 1e-3f, Spectrum(i < 20 ? 100.0f : 1.0f)});
+        const Vec3 centre(p.x, p.y, p.z - 4.0f);
+        if (i < 20) bright.push_back(centre);
+        EXPECT_TRUE(marks.add({centre - 1e-3f, centre + 1e-3f}, i < 20 ? 100.0f : 1.0f));
     }
-    const SplitMap map = find_split_pixels(scene, 4);
-    const auto marked = std::count(map.begin(), map.end(), uint8_t{4});
-    EXPECT_EQ(marked, 64 * 64 / 16);
-    for (int i = 0; i < 20; ++i) {  // those that matter are among them
-        const auto& lamp = std::get<SphereLight>(scene.lights[static_cast<size_t>(i)]);
-        const std::optional<Vec2> film = project(scene.camera, lamp.position, 0.5f);
+    SplitMap map(64, 64, 1);
+    marks.mark(4, 1.0f / 16.0f, map);
+    EXPECT_EQ(std::count(map.begin(), map.end(), uint8_t{4}), 64 * 64 / 16);
+    for (const Vec3& centre : bright) {
+        const std::optional<Vec2> film = project(scene.camera, centre, 0.5f);
         if (!film || glm::any(glm::lessThan(*film, Vec2(1.0f))) ||
             glm::any(glm::greaterThan(*film, Vec2(63.0f)))) {
             continue;
         }
         EXPECT_EQ(map.at(static_cast<int>(film->x), static_cast<int>(film->y)), 4);
     }
-    scene.lights.resize(1);
-    const SplitMap alone = find_split_pixels(scene, 4);
-    EXPECT_LE(std::count(alone.begin(), alone.end(), uint8_t{4}), 4);
+    scene.lights.push_back(SphereLight{bright[0], 1e-3f, Spectrum(1.0f)});
+    const SplitMap alone = find_split_pixels(scene, 4).lamps;
+    const auto marked = std::count(alone.begin(), alone.end(), uint8_t{4});
+    EXPECT_TRUE(marked >= 1 && marked <= 4) << marked;
+}
+
+/// The edge of a wide lamp, not its middle, and not the dark around it.
+TEST(PixelSplit, WideLampsMarkTheirEdges)
+{
+    Scene scene;
+    scene.camera.width = 64;
+    scene.camera.height = 64;
+    scene.camera.tan_half_fov_y = 1.0f;
+    scene.lights.push_back(QuadLight{
+        {-0.5f, -0.5f, -1.0f}, {1.0f, 0.0f, 0.0f}, {0.0f, 1.0f, 0.0f}, Spectrum(1.0f), true});
+    const PixelSplits splits = find_split_pixels(scene, 4);
+    EXPECT_EQ(splits.parts.size(), 0u);
+    EXPECT_EQ(splits.lamps.at(32, 32), 1);
+    EXPECT_EQ(splits.lamps.at(4, 4), 1);
+    const auto marked = std::count(splits.lamps.begin(), splits.lamps.end(), uint8_t{4});
+    EXPECT_GE(marked, 4 * 32 - 8);
+    EXPECT_LE(marked, 2 * 4 * 33);
 }
 
 /// Their places on the film are beyond what whole numbers hold.
@@ -126,7 +125,7 @@ TEST(PixelSplit, LampsBesideTheCameraAreFarOffTheFilm)
             scene.lights.push_back(SphereLight{{side.x, side.y, z}, 1e-20f, Spectrum(1.0f)});
         }
     }
-    const SplitMap map = find_split_pixels(scene, 4);
+    const SplitMap map = find_split_pixels(scene, 4).lamps;
     EXPECT_EQ(std::count(map.begin(), map.end(), uint8_t{4}), 0);
 }
 
@@ -178,7 +177,7 @@ double largest_z(int strata, bool follows_all)
     std::vector<PixelPart> parts;
     for (int y = 0; y < size; ++y) {
         for (int x = 0; x < size; ++x) {
-            if (pass.inputs.split.at(x, y) < 2) continue;
+            if (pass.inputs.split.parts.at(x, y) < 2) continue;
             RunningStats by_parts;
             RunningStats by_rays;
             for (uint32_t n = 0; n < 3000; ++n) {
