@@ -136,8 +136,6 @@ PathResult trace_after_event(const TraceContext& context, const ScatterEvent& fi
     const std::optional<LightRay> scattered = scattered_ray(first, rng, beta);
     if (!scattered) return result;
     follow(context, {*scattered, beta, 1, first.surface != nullptr}, std::nullopt, rng, result);
-    result.direct = Spectrum(0.0f);  // the scattered ray's half of it alone
-    result.surface_direct = Spectrum(0.0f);
     return result;
 }
 

@@ -42,8 +42,9 @@ struct PathResult {
 
 /// What a path brings that is about to scatter for the first time at `first`: radiance scattered
 /// twice and more, seen at the event, in indirect or surface_indirect. A medium's albedo is left
-/// out. Light scattered once is not estimated (0). Precondition: params.max_bounces > 1. For
-/// estimators that place the first event themselves.
+/// out. Of light scattered once there is what the scattered ray finds: by MIS with shadow rays, or all
+/// of it where those are not used, as for a constant environment alone. Precondition:
+/// params.max_bounces > 1. For estimators that place the first event themselves.
 [[nodiscard]] PathResult trace_after_event(const TraceContext& context, const ScatterEvent& first,
                                            Rng& rng);
 

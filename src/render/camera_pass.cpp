@@ -208,7 +208,7 @@ void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray, in
         static_cast<uint32_t>(NumberPair::Distances), static_cast<uint32_t>(NumberPair::Directions),
         static_cast<uint32_t>(NumberPair::Choices), static_cast<uint32_t>(NumberPair::Guesses),
         static_cast<uint32_t>(NumberPair::Counts)};
-    if (frame.params.control_variate) {
+    if (frame.params.control_variate && !inputs.paths_bring_sky) {
         Rng rng = pass_rng(inputs, key, Stream::Path);
         sample.direct =
             scatter_infinite_lights(frame, ray, media.bins, numbers, pairs, rng, owner, rays);

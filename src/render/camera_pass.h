@@ -37,6 +37,7 @@ struct PassInputs {
     const LightSampler& lights;           ///< for paths of many events; empty if there are none
     const ScatterNodes* nodes = nullptr;  ///< for previews; null: none
     bool shares_paths = false;            ///< of many events: see shares_paths()
+    bool paths_bring_sky = false;         ///< see paths_bring_sky()
     PixelSplits split{};                  ///< where pixels take several camera rays
 };
 

@@ -1,5 +1,8 @@
 #include "render/indirect_pass.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "multiscatter/cached_lights.h"
 #include "multiscatter/scatter_along.h"
 #include "multiscatter/shared_paths.h"
@@ -39,7 +42,8 @@ TraceContext context_with(const PassInputs& inputs, const CachedGuesses& guesses
 /// proportion to it, but where smoke is thin more, as a few heavy paths would show as spots.
 float paths_worth(float lost, int count)
 {
-    return std::max(lost * static_cast<float>(count), std::sqrt(lost));
+    const float worth = std::max(lost * static_cast<float>(count), std::sqrt(lost));
+    return worth > 1.0f ? std::round(worth) : worth;  // of 2.5 paths, 2 or 3 would be noise
 }
 
 PathVertex first_vertex(const ScatterEvent& event, Spectrum weight, int owner)
@@ -60,7 +64,21 @@ bool shares_paths(const Scene& scene, const RenderDescription& render)
 {
     const RestirParams& params = render.restir;
     return params.indirect != IndirectLight::Paths && params.corrections &&
-           render.path.max_bounces > 1 && is_still_but_for_camera(scene);
+           render.path.max_bounces > 1 && is_still_but_for_camera(scene) &&
+           !paths_bring_sky(scene, render);
+}
+
+bool paths_bring_sky(const Scene& scene, const RenderDescription& render)
+{
+    // Fewer events cut paths that have not yet found it.
+    constexpr int enough_bounces = 8;
+    const RestirParams& params = render.restir;
+    const bool is_asked = params.indirect == IndirectLight::Auto && params.corrections &&
+                          params.control_variate && render.path.max_bounces >= enough_bounces;
+    return is_asked && scene.environment && !scene.environment->map && scene.lights.empty() &&
+           !scene.surfaces &&
+           std::none_of(scene.media.volumes.begin(), scene.media.volumes.end(),
+                        [](const Volume& volume) { return volume.emission_params.is_on(); });
 }
 
 void add_indirect(const PassInputs& inputs, const PassKey& key, const PixelDomain& domain,
@@ -102,6 +120,7 @@ void add_indirect(const PassInputs& inputs, const PassKey& key, const PixelDomai
             }
             const PathResult path = trace_after_event(context, event, rng);
             sample.indirect += weight * albedo * path.indirect;
+            if (inputs.paths_bring_sky) sample.direct += weight * albedo * path.direct;
             sample.surface_indirect += weight * path.surface_indirect;
             truncated |= path.truncated;
         }

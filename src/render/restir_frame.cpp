@@ -73,11 +73,12 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
 {
     const double cpu_start = process_cpu_seconds();
     const bool shares = shares_paths(scene, render);
-    history.caches = make_light_caches(scene, {pixel_passes(render), shares}, history.caches);
+    const bool brings_sky = paths_bring_sky(scene, render);
+    history.caches =
+        make_light_caches(scene, {pixel_passes(render), shares, !brings_sky}, history.caches);
     const bool keeps_history = uses_history(render);
-    FrameDomain domain = make_frame_domain(
-        share(scene, keeps_history), history.caches,
-        settle_corrections(render.restir, render.path.max_bounces), &history.last);
+    FrameDomain domain = make_frame_domain(share(scene, keeps_history), history.caches,
+                                           render.restir, &history.last);
     domain.mean_known = mean_known_light(domain);
     stats.cache_cpu_seconds = process_cpu_seconds() - cpu_start;
     std::optional<Change> change;
@@ -98,6 +99,7 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
                             lights,
                             nodes ? &*nodes : nullptr,
                             shares && history.caches->extinction,
+                            brings_sky,
                             find_split_pixels(scene, domain.params.edge_strata)};
     PassCounts counts;
     bool finished = false;

@@ -71,7 +71,7 @@ void Builder::add_spots() const
 
 void Builder::add_environment() const
 {
-    if (!scene.environment || !(max_component(scene.environment->radiance) > 0.0f)) return;
+    if (!sizes.sky || !scene.environment || !(max_component(scene.environment->radiance) > 0.0f)) return;
     const bool same_light =
         previous && previous->parts && is_same(previous->parts->whole, *scene.environment);
     out.parts =

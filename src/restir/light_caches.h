@@ -52,6 +52,7 @@ struct CacheSizes {
     /// Pixels times passes that will use the caches: few of them are not worth fine caches.
     int64_t pixel_passes = 1'000'000;
     bool extinction = false;  ///< whether mean extinction is wanted
+    bool sky = true;          ///< whether anybody asks for the environment's light
 };
 
 /// Caches for a frame. Parts whose media and lights are those of `previous` (may be null) are taken

@@ -175,15 +175,6 @@ struct RestirParams {
     return p.environment_rays > 0 ? p.environment_rays : 8;
 }
 
-/// Settles what the scene leaves open by how often light may scatter: next to the noise of light
-/// scattered twice and more, that of few corrections is small.
-[[nodiscard]] inline RestirParams settle_corrections(RestirParams p, int max_bounces)
-{
-    if (p.distant_rays == 0) p.distant_rays = max_bounces > 1 ? 1 : distant_rays_of(p);
-    if (p.environment_rays == 0) p.environment_rays = max_bounces > 1 ? 2 : environment_rays_of(p);
-    return p;
-}
-
 /// Weights between surfaces' reservoirs.
 [[nodiscard]] inline ReuseMis surface_mis(const RestirParams& p)
 {

@@ -19,7 +19,8 @@ struct Pass {
           render(),
           domain(make_frame_domain({std::shared_ptr<const Scene>(), &scene},
                                    make_light_caches(scene, {100}, nullptr), render.restir)),
-          inputs{domain, render, {}, lights, nullptr, false, find_split_pixels(scene, strata)}
+          inputs{domain,  render, {},    lights,
+                 nullptr, false,  false, find_split_pixels(scene, strata)}
     {
         render.seed = seed;
     }
