@@ -78,26 +78,39 @@ bool for_each_collision(const BrickGrid& grid, const LocalRay& ray, float scale,
     });
 }
 
-/// Where the integral of density over a cell, counted from its start, reaches `goal`: the root of a
-/// monotone function by Newton's method, kept inside a bracket.
+/// Where the integral of density over a cell, counted from its start, reaches `goal`. Density is a
+/// cubic along the cell, known by four values, so its integral is a quartic: the root of a monotone
+/// function by Newton's method, kept inside a bracket, without further lookups.
 [[nodiscard]] inline float invert_cell(const BrickGrid& grid, const LocalRay& ray,
                                        const BrickSpan& span, const CellSpan& cell, float goal)
 {
-    float lo = cell.s0;
-    float hi = cell.s1;
-    const float whole = cell.integral();
-    float s = cell.s0 + (cell.s1 - cell.s0) * std::clamp(goal / whole, 0.0f, 1.0f);
+    const float length = cell.s1 - cell.s0;
+    const float vq = sample_in_brick(grid, span, ray.at(cell.s0 + 0.25f * length));
+    // v0 + a t + b t^2 + c t^3 over t in [0,1].
+    const float quarter = vq - cell.v0;
+    const float half = cell.vm - cell.v0;
+    const float whole = cell.v1 - cell.v0;
+    const float a = (32.0f * quarter - 12.0f * half + whole) * (1.0f / 3.0f);
+    const float b = 8.0f * half - whole - 3.0f * a;
+    const float c = whole - a - b;
+    const float area = cell.integral() / length;
+    const float wanted = goal / length;
+    float lo = 0.0f;
+    float hi = 1.0f;
+    float t = std::clamp(wanted / area, 0.0f, 1.0f);
     for (int i = 0; i < 20; ++i) {
-        CellSpan part{cell.s0, s, cell.v0, 0.0f, 0.0f};
-        part.vm = sample_in_brick(grid, span, ray.at(0.5f * (cell.s0 + s)));
-        part.v1 = sample_in_brick(grid, span, ray.at(s));
-        const float excess = part.integral() - goal;
-        if (std::abs(excess) <= 2e-7f * whole) break;
-        (excess > 0.0f ? hi : lo) = s;
-        const float newton = s - excess / part.v1;
-        s = newton > lo && newton < hi ? newton : 0.5f * (lo + hi);
+        const float density = cell.v0 + t * (a + t * (b + t * c));
+        const float before =
+            t * (cell.v0 + t * (0.5f * a + t * ((1.0f / 3.0f) * b + t * 0.25f * c)));
+        const float excess = before - wanted;
+        if (std::abs(excess) <= 2e-7f * area) break;
+        (excess > 0.0f ? hi : lo) = t;
+        const float newton = t - excess / density;
+        const float next = newton > lo && newton < hi ? newton : 0.5f * (lo + hi);
+        if (next == t) break;
+        t = next;
     }
-    return s;
+    return cell.s0 + t * length;
 }
 
 /// Spends the optical depth `left` in one brick by its cells' closed-form integrals. Returns where

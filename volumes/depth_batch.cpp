@@ -2,7 +2,7 @@
 
 #include "core/error.h"
 #include "volumes/local_ray.h"
-#include "volumes/walk_isa.h"
+#include "volumes/ray_order.h"
 #include "volumes/walk_kernels.h"
 
 namespace mote {
@@ -31,29 +31,6 @@ struct Workspace {
     float piece_integral[PieceList::capacity + 1];
     size_t piece_count;
 };
-
-/// Stable counting sort: order[] = indices of `keys`, all below KeyCount, by ascending key.
-template <size_t KeyCount, class Index>
-void sort_by_key(std::span<const uint8_t> keys, Index* order)
-{
-    size_t place[KeyCount + 1] = {};
-    for (const uint8_t key : keys) ++place[key + 1];
-    for (size_t key = 1; key < KeyCount; ++key) place[key] += place[key - 1];
-    for (size_t i = 0; i < keys.size(); ++i) order[place[keys[i]]++] = static_cast<Index>(i);
-}
-
-const WalkKernels& kernels()
-{
-    switch (walk_isa()) {
-        case Isa::Avx512:
-            return avx512_walk;
-        case Isa::Avx2:
-            return avx2_walk;
-        case Isa::Scalar:
-            break;
-    }
-    return scalar_walk;
-}
 
 void set_ray(RayBlock& rays, size_t i, const BrickGrid& grid, const LocalRay& ray)
 {
@@ -145,7 +122,7 @@ void add_volume(const Volume& volume, std::span<const DepthQuery> queries, std::
     const BrickGrid& grid = *volume.density;
     const Vec3i bricks = grid.brick_count;
     const BrickTable table{grid.table.data(), {bricks.x, bricks.y, bricks.z}};
-    const WalkKernels& walk = kernels();
+    const WalkKernels& walk = walk_kernels();
     start_rays(volume, queries, tau, chosen, work);
     counts.rays += work.ray_count;
     const size_t padded = (work.ray_count + lane_group - 1) / lane_group * lane_group;
@@ -163,24 +140,6 @@ void add_volume(const Volume& volume, std::span<const DepthQuery> queries, std::
         const double depth = work.integral[i] * static_cast<double>(volume.density_scale);
         tau[work.query[i]] += static_cast<float>(depth);
     }
-}
-
-/// Queries whose directions have the same signs and the same largest component are neighbours:
-/// they share bricks while these are in the cache. Measured: 14 % for rays in all directions
-/// through 256^3 voxels.
-std::vector<uint32_t> order_by_direction(std::span<const DepthQuery> queries)
-{
-    std::vector<uint32_t> order(queries.size());
-    std::vector<uint8_t> keys(queries.size());
-    for (size_t i = 0; i < queries.size(); ++i) {
-        const Vec3 d = queries[i].d;
-        const Vec3 size = glm::abs(d);
-        const int longest = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
-        const int signs = (d.x > 0.0f ? 1 : 0) + (d.y > 0.0f ? 2 : 0) + (d.z > 0.0f ? 4 : 0);
-        keys[i] = static_cast<uint8_t>(3 * signs + longest);
-    }
-    sort_by_key<24>(keys, order.data());
-    return order;
 }
 
 }  // namespace

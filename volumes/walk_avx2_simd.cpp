@@ -3,6 +3,7 @@
 #include "volumes/brick_steps_simd.h"
 #include "volumes/cell_steps_simd.h"
 #include "volumes/lane_loads_simd.h"
+#include "volumes/march_steps_simd.h"
 
 namespace mote {
 namespace {
@@ -122,6 +123,21 @@ struct Lanes {
         }
     };
 
+    /// A cell of each lane's brick; empty positions of the table count as brick 0.
+    static Cell cells(const float* values, Int brick, Real cell)
+    {
+        alignas(64) int32_t bricks[width];
+        alignas(64) int32_t corners[width];
+        _mm256_store_si256(reinterpret_cast<__m256i*>(bricks),
+                           _mm256_max_epi32(brick, _mm256_setzero_si256()));
+        _mm256_store_si256(reinterpret_cast<__m256i*>(corners), to_int(cell));
+        Cell at;
+        for (size_t i = 0; i < width; ++i) {
+            at.lane[i] = values + static_cast<ptrdiff_t>(bricks[i]) * 736 + corners[i];
+        }
+        return at;
+    }
+
     struct Bases {
         alignas(32) const float* base[8];
 
@@ -147,6 +163,6 @@ struct Lanes {
 
 }  // namespace
 
-const WalkKernels avx2_walk{step_all<Lanes>, integrate_all<Lanes>};
+const WalkKernels avx2_walk{step_all<Lanes>, integrate_all<Lanes>, march_all<Lanes>};
 
 }  // namespace mote

@@ -3,6 +3,7 @@
 #include "volumes/brick_steps_simd.h"
 #include "volumes/cell_steps_simd.h"
 #include "volumes/lane_loads_simd.h"
+#include "volumes/march_steps_simd.h"
 
 namespace mote {
 namespace {
@@ -113,6 +114,21 @@ struct Lanes {
         }
     };
 
+    /// A cell of each lane's brick; empty positions of the table count as brick 0.
+    static Cell cells(const float* values, Int brick, Real cell)
+    {
+        alignas(64) int32_t bricks[width];
+        alignas(64) int32_t corners[width];
+        _mm512_store_si512(reinterpret_cast<__m512i*>(bricks),
+                           _mm512_max_epi32(brick, _mm512_setzero_si512()));
+        _mm512_store_si512(reinterpret_cast<__m512i*>(corners), to_int(cell));
+        Cell at;
+        for (size_t i = 0; i < width; ++i) {
+            at.lane[i] = values + static_cast<ptrdiff_t>(bricks[i]) * 736 + corners[i];
+        }
+        return at;
+    }
+
     struct Bases {
         alignas(64) const float* base[16];
 
@@ -138,6 +154,6 @@ struct Lanes {
 
 }  // namespace
 
-const WalkKernels avx512_walk{step_all<Lanes>, integrate_all<Lanes>};
+const WalkKernels avx512_walk{step_all<Lanes>, integrate_all<Lanes>, march_all<Lanes>};
 
 }  // namespace mote

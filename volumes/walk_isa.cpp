@@ -3,6 +3,7 @@
 #include <atomic>
 
 #include "core/error.h"
+#include "volumes/walk_kernels.h"
 
 namespace mote {
 namespace {
@@ -53,6 +54,19 @@ bool is_supported(Isa isa)
 Isa walk_isa()
 {
     return chosen().load(std::memory_order_relaxed);
+}
+
+const WalkKernels& walk_kernels()
+{
+    switch (walk_isa()) {
+        case Isa::Avx512:
+            return avx512_walk;
+        case Isa::Avx2:
+            return avx2_walk;
+        case Isa::Scalar:
+            break;
+    }
+    return scalar_walk;
 }
 
 void set_walk_isa(std::optional<Isa> isa)

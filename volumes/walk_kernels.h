@@ -30,6 +30,18 @@ struct RayBlock {
     alignas(64) float s1[capacity];       ///< where it ends; below 0: done
 };
 
+/// Rays that are marched through one grid, in its local coordinates.
+struct MarchBlock {
+    static constexpr size_t capacity = 256;
+
+    alignas(64) float o[3][capacity];
+    alignas(64) float d[3][capacity];    ///< voxels per metre
+    alignas(64) float inv[3][capacity];  ///< 1 / d; 0 along axes that the ray does not move in
+    alignas(64) float s1[capacity];      ///< where it ends [m]; below 0: nowhere
+    alignas(64) float step[capacity];    ///< > 0 [m]
+    alignas(64) float limit[capacity];   ///< integral beyond which nothing matters
+};
+
 /// Pieces of rays through bricks, as they come out of the walk. Room for one group more than
 /// `capacity`: whole vectors are stored.
 struct PieceList {
@@ -52,7 +64,7 @@ struct BrickPiece {
 };
 static_assert(sizeof(BrickPiece) == 32);
 
-/// One form of the two loops. All forms give the same bits: each lane does the same IEEE
+/// One form of the three loops. All forms give the same bits: each lane does the same IEEE
 /// operations whatever runs beside it.
 struct WalkKernels {
     /// Takes each of the first `count` rays (a multiple of lane_group) `steps` positions of the
@@ -65,7 +77,15 @@ struct WalkKernels {
     /// Quickest where pieces next to each other cross equally many cells.
     void (*integrate)(const float* values, const BrickPiece* pieces, const uint16_t* order,
                       size_t count, float* integral);
+    /// integral[i] = the same over the first `count` rays (a multiple of lane_group) by the
+    /// midpoint rule, in steps of rays.step[i]; any value of at least rays.limit[i] where it
+    /// exceeds that. lookups[i]: steps that looked anything up.
+    void (*march)(const BrickTable& table, const float* values, const MarchBlock& rays,
+                  size_t count, float* integral, float* lookups);
 };
+
+/// The form in use (walk_isa.h).
+[[nodiscard]] const WalkKernels& walk_kernels();
 
 extern const WalkKernels scalar_walk;
 extern const WalkKernels avx2_walk;    ///< needs AVX2 and FMA

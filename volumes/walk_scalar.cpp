@@ -1,5 +1,6 @@
 #include "volumes/brick_steps_simd.h"
 #include "volumes/cell_steps_simd.h"
+#include "volumes/march_steps_simd.h"
 
 namespace mote {
 namespace {
@@ -71,6 +72,13 @@ struct Lanes {
         }
     };
 
+    /// A cell of a brick; empty positions of the table count as brick 0.
+    static Cell cells(const float* values, Int brick, Real cell)
+    {
+        return {values + static_cast<ptrdiff_t>(brick > 0 ? brick : 0) * 736 +
+                static_cast<int>(cell)};
+    }
+
     struct Bases {
         const float* base;
 
@@ -84,6 +92,6 @@ struct Lanes {
 
 }  // namespace
 
-const WalkKernels scalar_walk{step_all<Lanes>, integrate_all<Lanes>};
+const WalkKernels scalar_walk{step_all<Lanes>, integrate_all<Lanes>, march_all<Lanes>};
 
 }  // namespace mote

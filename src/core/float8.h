@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 
 namespace mote {
 
@@ -10,12 +11,26 @@ using Float8 = float __attribute__((vector_size(32)));
 using Int8 = int32_t __attribute__((vector_size(32)));
 inline constexpr int lane_count = 8;
 
-// The functions below are approximations, good enough for weights of samples; errors are relative.
+// The functions below are approximations, good enough for weights of samples unless they say more;
+// errors are relative.
 // always_inline: vectors as arguments have no ABI that all compilers agree on.
 
 [[nodiscard, gnu::always_inline]] inline Float8 splat(float x)
 {
     return Float8{} + x;
+}
+
+/// Eight floats from memory, aligned or not.
+[[nodiscard, gnu::always_inline]] inline Float8 load(const float* from)
+{
+    Float8 x;
+    std::memcpy(&x, from, sizeof x);
+    return x;
+}
+
+[[gnu::always_inline]] inline void store(float* to, Float8 x)
+{
+    std::memcpy(to, &x, sizeof x);
 }
 
 [[nodiscard, gnu::always_inline]] inline Float8 min(Float8 a, Float8 b)
@@ -61,6 +76,22 @@ inline constexpr int lane_count = 8;
     const Float8 mantissa =
         1.0f + f * (1.0f + f * (0.5f + f * (1.0f / 6.0f + f * (1.0f / 24.0f + f / 120.0f))));
     return mantissa * from_bits((__builtin_convertvector(whole, Int8) + 127) << 23);
+}
+
+/// exp(x) for x <= 0, to 2e-7 down to x = -87; values below (and NaN) are held at exp(-87). Cody
+/// and Waite's reduction, polynomial of the Cephes library.
+[[nodiscard, gnu::always_inline]] inline Float8 exp_of_negative(Float8 x)
+{
+    constexpr float magic = 0x1.8p23f;
+    x = max(x, splat(-87.0f));
+    const Float8 whole = (x * 1.44269504f + magic) - magic;  // the nearest whole number
+    // ln 2 in two parts: whole times the first is exact.
+    const Float8 r = (x - whole * 0.693359375f) + whole * 2.12194440e-4f;
+    const Float8 p =
+        0.5f +
+        r * (0.166666655f + r * (4.16657959e-2f +
+                                 r * (8.33345191e-3f + r * (1.39819995e-3f + r * 1.98756915e-4f))));
+    return (p * r * r + r + 1.0f) * from_bits((__builtin_convertvector(whole, Int8) + 127) << 23);
 }
 
 /// log(x) for finite x >= 1, to 3e-5 absolute.

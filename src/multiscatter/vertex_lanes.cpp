@@ -38,18 +38,6 @@ struct Ways {
     return approximate_exp(-tau) + 0.01f * t * t;
 }
 
-[[gnu::always_inline]] inline Float8 load(const float* p)
-{
-    Float8 out;
-    __builtin_memcpy(&out, p, sizeof(out));
-    return out;
-}
-
-[[gnu::always_inline]] inline void store(Float8 v, float* p)
-{
-    __builtin_memcpy(p, &v, sizeof(v));
-}
-
 [[gnu::always_inline]] inline float sum_of(Float8 v)
 {
     float sum = 0.0f;
@@ -118,7 +106,7 @@ void eval_kernels(const LaneGroup& group, const CoarseExtinction& extinction, Ve
         coarse_optical_depths(extinction, y, v.x, v.y, v.z, lookups, tau);
         k *= v.is_used * with_tail(tau) * (w.inv_length * w.inv_length);
         if (normal) k *= abs(normal->x * w.x + normal->y * w.y + normal->z * w.z);
-        store(k, kernel.data() + i * lane_count);
+        store(kernel.data() + i * lane_count, k);
     }
 }
 
@@ -172,7 +160,7 @@ void scatter_to_group(const LaneGroup& group, const PathVertex& y, std::span<con
         sums.r[i] += r;
         sums.g[i] += g;
         sums.b[i] += b;
-        store(max(abs(r), max(abs(g), abs(b))), brought.data() + i * lane_count);
+        store(brought.data() + i * lane_count, max(abs(r), max(abs(g), abs(b))));
     }
 }
 

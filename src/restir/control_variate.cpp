@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "restir/correction_need.h"
+#include "restir/edge_weights.h"
 #include "restir/incident_light.h"
 #include "restir/media_mixture.h"
 #include "restir/mixed_phase.h"
-#include "restir/pixel_domain.h"
 #include "restir/ray_flight.h"
 #include "scene/environment.h"
 #include "volumes/media_at.h"
@@ -20,32 +20,28 @@ constexpr float image_share = 0.5f;
 /// Rays into the environment that start at one point: directions make more noise than places.
 /// Measured on bench_plume_g3: no more noise than with points of their own, 4 % less time.
 constexpr int rays_per_point = 2;
+constexpr int edge_capacity = EdgeWeights::capacity;
 
-struct EdgeLight {
-    Vec3 x{0.0f};
-    MediaMixture media;
-    Spectrum distant{0.0f};      ///< cached in-scattered radiance, albedo included
-    Spectrum environment{0.0f};  ///< likewise
-};
-
+/// Cached in-scattered radiance at the edges of a ray's bins, albedo included, and the closed form
+/// of what they bring.
 class InfiniteLights {
   public:
     InfiniteLights(const FrameDomain& frame, const Ray& ray, const RayBins& bins)
         : frame_(frame), ray_(ray), bins_(bins), lost_(-std::expm1(-bins.depth()))
     {
-        for (int k = 0; k <= bins.count; ++k) set_edge(k);
+        find_media();
+        for (int k = 0; k <= bins.count; ++k) edges_[k] = Float8{};
+        for (const LightCaches::Distant& distant : frame_.caches->distant) add_distant(distant);
+        if (frame_.caches->environment) add_environment();
     }
 
     [[nodiscard]] KnownLight closed_form() const
     {
-        KnownLight sum;
-        for (int k = 0; k < bins_.count; ++k) {
-            const Vec2 weights = std::exp(-bins_.tau[k]) * linear_weights(bins_.depth_of_bin(k));
-            sum.distant += weights.x * edges_[k].distant + weights.y * edges_[k + 1].distant;
-            sum.environment +=
-                weights.x * edges_[k].environment + weights.y * edges_[k + 1].environment;
-        }
-        return sum;
+        EdgeWeights weights;
+        weigh_edges(bins_, weights);
+        Float8 sum{};
+        for (int k = 0; k <= bins_.count; ++k) sum += weights.of[k] * edges_[k];
+        return {distant_of(sum), environment_of(sum)};
     }
 
     [[nodiscard]] RayFlight free_flight(float u) const
@@ -61,54 +57,112 @@ class InfiniteLights {
                                                TileRays& rays) const;
 
   private:
-    void set_edge(int k)
+    // Red, green, blue of distant lights in the lower half, of the environment in the upper one.
+    static Spectrum distant_of(const Float8& v) { return {v[0], v[1], v[2]}; }
+    static Spectrum environment_of(const Float8& v) { return {v[4], v[5], v[6]}; }
+    /// Between the edges of the flight's bin.
+    [[nodiscard, gnu::always_inline]] inline Float8 known_at(const RayFlight& flight) const
     {
-        EdgeLight& edge = edges_[k];
-        edge.x = ray_.at(bins_.world_t(bins_.s[k]));
-        edge.media = mixture_at(frame_.scene->media, edge.x, ray_.time);
-        // At the border of all media the mixture is that of the edge before.
-        if (edge.media.count == 0 && k > 0) edge.media = edges_[k - 1].media;
-        for (const LightCaches::Distant& distant : frame_.caches->distant) {
-            edge.distant += distant.irradiance * cached_distant(edge, distant);
-        }
-        if (frame_.caches->environment) edge.environment = cached_environment(edge);
+        const Float8 near = edges_[flight.bin];
+        return near + flight.lambda * (edges_[flight.bin + 1] - near);
     }
 
-    /// Per unit of irradiance.
-    [[nodiscard]] Spectrum cached_distant(const EdgeLight& edge,
-                                          const LightCaches::Distant& distant) const
+    [[nodiscard]] Vec3 position(int k) const { return ray_.at(bins_.world_t(bins_.s[k])); }
+
+    /// One medium of one colour is the same mixture everywhere; else one per edge.
+    void find_media()
     {
-        Spectrum scattering(0.0f);
-        for (int i = 0; i < edge.media.count; ++i) {
-            const MediaMixture::Part& part = edge.media.parts[i];
-            scattering +=
-                (part.share * eval_phase(part.volume->phase, -ray_.d, distant.direction)) *
-                part.albedo;
+        const Media& media = frame_.scene->media;
+        if (media.volumes.size() == 1 && !media.volumes.front().color) {
+            everywhere_ = mixture_at(media, position(0), ray_.time);
+            return;
         }
-        return scattering * distant.map->transmittance(edge.x);
+        for (int k = 0; k <= bins_.count; ++k) {
+            media_.push_back(mixture_at(media, position(k), ray_.time));
+            // At the border of all media the mixture is that of the edge before.
+            if (media_.back().count == 0 && k > 0) media_.back() = media_[media_.size() - 2];
+        }
+    }
+    [[nodiscard]] const MediaMixture& media_at_edge(int k) const
+    {
+        return media_.empty() ? everywhere_ : media_[static_cast<size_t>(k)];
     }
 
-    [[nodiscard]] Spectrum cached_environment(const EdgeLight& edge) const
+    /// Albedo times phase function.
+    [[nodiscard]] Spectrum scattering(const MediaMixture& media, Vec3 wi) const
     {
         Spectrum sum(0.0f);
-        for (int i = 0; i < edge.media.count; ++i) {
-            const MediaMixture::Part& part = edge.media.parts[i];
-            sum += part.share * part.albedo *
-                   frame_.caches->environment->inscatter(phase_index(part), edge.x);
+        for (int i = 0; i < media.count; ++i) {
+            const MediaMixture::Part& part = media.parts[i];
+            sum += (part.share * eval_phase(part.volume->phase, -ray_.d, wi)) * part.albedo;
         }
         return sum;
     }
 
-    /// Per solid angle; its integral over wi is cached_environment.
-    [[nodiscard]] Spectrum cached_environment(const EdgeLight& edge, Vec3 wi) const
+    void add_distant(const LightCaches::Distant& distant)
     {
-        Spectrum sum(0.0f);
-        for (int i = 0; i < edge.media.count; ++i) {
-            const MediaMixture::Part& part = edge.media.parts[i];
-            sum += part.share * part.albedo *
-                   frame_.caches->environment->directional(phase_index(part), edge.x, -ray_.d, wi);
+        alignas(32) float depth[edge_capacity];
+        const int padded = (bins_.count + lane_count) / lane_count * lane_count;
+        for (int k = 0; k <= bins_.count; ++k) depth[k] = distant.map->optical_depth(position(k));
+        for (int k = bins_.count + 1; k < padded; ++k) depth[k] = 0.0f;
+        for (int k = 0; k < padded; k += lane_count) {
+            store(depth + k, exp_of_negative(-load(depth + k)));
         }
-        return sum;
+        const auto add = [&](int k, Spectrum light) {
+            edges_[k] += depth[k] * Float8{light.x, light.y, light.z};
+        };
+        if (media_.empty()) {
+            const Spectrum light = distant.irradiance * scattering(everywhere_, distant.direction);
+            for (int k = 0; k <= bins_.count; ++k) add(k, light);
+        } else {
+            for (int k = 0; k <= bins_.count; ++k) {
+                add(k, distant.irradiance * scattering(media_at_edge(k), distant.direction));
+            }
+        }
+    }
+
+    void add_environment()
+    {
+        const EnvironmentCache& cache = *frame_.caches->environment;
+        for (int k = 0; k <= bins_.count; ++k) {
+            const MediaMixture& media = media_at_edge(k);
+            const Vec3 x = position(k);
+            Spectrum sum(0.0f);
+            for (int i = 0; i < media.count; ++i) {
+                const MediaMixture::Part& part = media.parts[i];
+                sum += part.share * part.albedo * cache.inscatter(phase_index(part), x);
+            }
+            edges_[k] += Float8{0.0f, 0.0f, 0.0f, 0.0f, sum.x, sum.y, sum.z};
+        }
+    }
+
+    /// Of one light per unit of its irradiance.
+    [[nodiscard]] Spectrum cached_distant(int k, const LightCaches::Distant& distant) const
+    {
+        const float depth = distant.map->optical_depth(position(k));
+        // The same exponential as at all edges.
+        return exp_of_negative(splat(-depth))[0] * scattering(media_at_edge(k), distant.direction);
+    }
+
+    /// Environment light per solid angle at both edges of the flight's bin, interpolated; its
+    /// integral over wi is known_at.
+    [[nodiscard]] Spectrum cached_environment(const RayFlight& flight, Vec3 wi) const
+    {
+        const EnvironmentCache& cache = *frame_.caches->environment;
+        EnvironmentCache::Towards towards{-1, {}, 0.0f};
+        const auto at = [&](int k) {
+            const MediaMixture& media = media_at_edge(k);
+            Spectrum sum(0.0f);
+            for (int i = 0; i < media.count; ++i) {
+                const MediaMixture::Part& part = media.parts[i];
+                const int phase = phase_index(part);
+                if (towards.phase != phase) towards = cache.towards(phase, -ray_.d, wi);
+                sum += part.share * part.albedo * cache.directional(towards, position(k));
+            }
+            return sum;
+        };
+        const Spectrum near = at(flight.bin);
+        return near + flight.lambda * (at(flight.bin + 1) - near);
     }
 
     [[nodiscard]] int phase_index(const MediaMixture::Part& part) const
@@ -121,14 +175,11 @@ class InfiniteLights {
     const Ray& ray_;
     const RayBins& bins_;
     float lost_;  ///< share of the light that collides on the ray
-    EdgeLight edges_[RayBins::capacity + 1];
+    MediaMixture everywhere_;
+    std::vector<MediaMixture> media_;  ///< per edge; empty: `everywhere_`
+    /// Filled up to bins.count: clearing all of it would cost more than many a ray.
+    Float8 edges_[edge_capacity];
 };
-
-/// Between the values at the near and the far edge.
-Spectrum between(Spectrum near, Spectrum far, float lambda)
-{
-    return near + lambda * (far - near);
-}
 
 Spectrum InfiniteLights::correct_distant(float u, float u_light, float share, int owner,
                                          float pixel_luminance, Rng& rng, TileRays& rays) const
@@ -161,14 +212,13 @@ Spectrum InfiniteLights::correct_distant(float u, float u_light, float share, in
     const Spectrum f = weight * scattering_at(frame_, flight.x, ray_.time, -ray_.d, wi);
     rays.exact.add(owner, flight.x, wi, infinity, ray_.time, f,
                    depth_that_matters(f, pixel_luminance));
-    const EdgeLight& near = edges_[flight.bin];
-    const EdgeLight& far = edges_[flight.bin + 1];
     if (distant.size() == 1 && distant[i].spot < 0) {
-        return -per_irradiance * between(near.distant, far.distant, flight.lambda);
+        return -per_irradiance * distant_of(known_at(flight));
     }
     // The same irradiance on both sides: how it varies over a spot makes no noise.
-    return -weight * between(cached_distant(near, distant[i]), cached_distant(far, distant[i]),
-                             flight.lambda);
+    const Spectrum near = cached_distant(flight.bin, distant[i]);
+    const Spectrum far = cached_distant(flight.bin + 1, distant[i]);
+    return -weight * (near + flight.lambda * (far - near));
 }
 
 Spectrum InfiniteLights::correct_environment(const RayFlight& flight, Vec2 u_direction,
@@ -201,8 +251,7 @@ Spectrum InfiniteLights::correct_environment(const RayFlight& flight, Vec2 u_dir
     } else {
         rays.guessed.add(owner, flight.x, wi, ray_.time, f, tau_max, number);
     }
-    return -weight * between(cached_environment(edges_[flight.bin], wi),
-                             cached_environment(edges_[flight.bin + 1], wi), flight.lambda);
+    return -weight * cached_environment(flight, wi);
 }
 
 }  // namespace

@@ -51,14 +51,27 @@ Spectrum EnvironmentCache::inscatter(int phase, Vec3 x) const
                       inscatter_[static_cast<size_t>(phase)]);
 }
 
-Spectrum EnvironmentCache::directional(int phase, Vec3 x, Vec3 wo, Vec3 wi) const
+EnvironmentCache::Towards EnvironmentCache::towards(int phase, Vec3 wo, Vec3 wi) const
+{
+    Towards out{phase, {}, 0.0f};
+    if (inscatter_.empty()) return out;
+    const Inscatter& light = inscatter_[static_cast<size_t>(phase)];
+    if (const auto* narrow = std::get_if<NarrowInscatter>(&light)) {
+        out.hat = narrow->hats_at(wo, wi);
+        out.scale = narrow->phase_at(wo, wi);
+    } else {
+        out.hat = nodes_.transmittance->hats().at(wi);
+        out.scale = 1.0f;
+    }
+    return out;
+}
+
+Spectrum EnvironmentCache::directional(const Towards& towards, Vec3 x) const
 {
     if (inscatter_.empty()) return Spectrum(0.0f);
-    const Inscatter& light = inscatter_[static_cast<size_t>(phase)];
-    if (const auto* wide = std::get_if<WideInscatter>(&light)) {
-        return wide->directional(nodes_, x, wi);
-    }
-    return std::get<NarrowInscatter>(light).directional(nodes_, x, wo, wi);
+    return towards.scale *
+           std::visit([&](const auto& light) { return light.directional(nodes_, x, towards.hat); },
+                      inscatter_[static_cast<size_t>(towards.phase)]);
 }
 
 }  // namespace mote

@@ -40,9 +40,23 @@ class EnvironmentCache {
     /// any x.
     [[nodiscard]] Spectrum inscatter(int phase, Vec3 x) const;
 
-    /// Its density in wi: radiance, transmittance and phase function [W/(m^2 sr^2)]. wo [unit]
-    /// points from x to the camera, or nearly (lenses); both away from the vertex. Finite and >= 0.
-    [[nodiscard]] Spectrum directional(int phase, Vec3 x, Vec3 wo, Vec3 wi) const;
+    /// A direction wi in which light is looked for from points on one camera ray.
+    struct Towards {
+        int phase = 0;
+        DirectionHats::Weights hat{};
+        float scale = 0.0f;
+    };
+    /// wo [unit] points from the points to the camera, or nearly (lenses); both away from the
+    /// vertex.
+    [[nodiscard]] Towards towards(int phase, Vec3 wo, Vec3 wi) const;
+
+    /// In-scatter's density in that direction: radiance, transmittance and phase function
+    /// [W/(m^2 sr^2)]. Finite and >= 0.
+    [[nodiscard]] Spectrum directional(const Towards& towards, Vec3 x) const;
+    [[nodiscard]] Spectrum directional(int phase, Vec3 x, Vec3 wo, Vec3 wi) const
+    {
+        return directional(towards(phase, wo, wi), x);
+    }
 
     /// Of the last bake alone.
     [[nodiscard]] const CacheStats& stats() const { return stats_; }

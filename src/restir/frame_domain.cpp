@@ -43,7 +43,7 @@ DirectionTargets targets_of(const Scene& scene, const LightCaches& caches)
         out.spheres |= std::holds_alternative<SphereLight>(light);
         out.triangles |= scene.surfaces && std::holds_alternative<TriangleLight>(light);
     }
-    for (const auto& bricks : caches.emissive) out.emissive_volumes |= bricks.has_value();
+    for (const auto& bricks : caches.emissive) out.emissive_volumes |= bricks != nullptr;
     return out;
 }
 

@@ -32,7 +32,7 @@ void GuessedRays::trace(const Scene& scene, const LightGuess& guess, WalkCounts&
         tau_max[i] = guesses.queries[i].tau_max;
         guesses.queries[i].tau_max = std::min(tau_max[i], deepest_guess);
     }
-    guesses.trace(scene.surfaces.get(), guess.media, coarse_counts);
+    guesses.guess(scene.surfaces.get(), guess.media, coarse_counts);
     corrections.clear();
     values.resize(size());
     // Systematic sampling: the chances of an owner's rays are laid end to end, and those that hold

@@ -34,6 +34,7 @@ struct Builder {
     void add_map(LightCaches::Distant distant) const;
     void add_environment() const;
     void add_extinction() const;
+    [[nodiscard]] std::shared_ptr<const EmissiveBricks> emissive_bricks(size_t i) const;
     void add_local() const;
 };
 
@@ -116,6 +117,24 @@ void Builder::add_extinction() const
         scene.media, find_smoke_cells(scene.media, edge_voxels, most_cells)));
 }
 
+/// Where a volume glows, in object space: wherever it moves to.
+std::shared_ptr<const EmissiveBricks> Builder::emissive_bricks(size_t i) const
+{
+    const Volume& volume = scene.media.volumes[i];
+    if (previous && i < previous->volumes.size() && previous->emissive[i]) {
+        const Volume& old = previous->volumes[i];
+        if (old.density == volume.density && old.density_scale == volume.density_scale &&
+            is_same_look(old, volume)) {
+            ++out.reused;
+            return previous->emissive[i];
+        }
+    }
+    auto bricks = std::make_shared<const EmissiveBricks>(make_emissive_bricks(volume));
+    if (bricks->empty() || !(bricks->total_power > 0.0)) return nullptr;
+    ++out.built;
+    return bricks;
+}
+
 void Builder::add_local() const
 {
     out.local_lights = local_lights(scene.lights);
@@ -124,10 +143,10 @@ void Builder::add_local() const
     for (size_t i = 0; i < scene.media.volumes.size(); ++i) {
         const Volume& volume = scene.media.volumes[i];
         if (!volume.emission_params.is_on()) continue;
-        EmissiveBricks bricks = make_emissive_bricks(volume);
-        if (bricks.empty() || !(bricks.total_power > 0.0)) continue;
-        add_emissive_volume(volume, bricks, id++, out.local_lights);
-        out.emissive[i] = std::move(bricks);
+        out.emissive[i] = emissive_bricks(i);
+        if (out.emissive[i]) {
+            add_emissive_volume(volume, *out.emissive[i], id++, out.local_lights);
+        }
     }
     if (out.local_lights.empty()) return;
     const Vec3 eye = camera_position(scene.camera);
@@ -159,6 +178,7 @@ std::shared_ptr<const LightCaches> make_light_caches(
         return out;
     }
     out->surfaces = scene.surfaces;
+    out->volumes = volumes;
     const bool same_media = previous && previous->media == out->media;
     const bool same_shadows = same_media && is_same(previous->surfaces.get(), scene.surfaces.get());
     const Builder builder{scene, sizes, previous.get(), same_media, same_shadows, *out};

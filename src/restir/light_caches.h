@@ -33,11 +33,13 @@ struct LightCaches {
     std::shared_ptr<const EnvironmentParts> parts;  ///< of the scene's environment: not a guess
     std::optional<EnvironmentCache> environment;    ///< of its rest, without spots
     std::optional<LightCells> cells;                ///< of lamps and emissive volumes
-    std::shared_ptr<const CoarseExtinction> extinction;   ///< if asked for
-    std::vector<std::optional<EmissiveBricks>> emissive;  ///< of each volume; empty: does not glow
+    std::shared_ptr<const CoarseExtinction> extinction;  ///< if asked for
+    /// Of each volume; null: does not glow.
+    std::vector<std::shared_ptr<const EmissiveBricks>> emissive;
 
     // What they were made from, to tell whether they may stay.
     MediaKey media;
+    std::vector<Volume> volumes;
     std::shared_ptr<const Surfaces> surfaces;
     std::vector<LocalLight> local_lights;
     std::vector<Spectrum> environment_radiance;  ///< mean_radiance()

@@ -56,6 +56,14 @@ std::vector<float> depths_of(const Media& media, std::span<const DepthQuery> ray
     return tau;
 }
 
+std::vector<float> marched_depths_of(const Media& media, std::span<const DepthQuery> rays)
+{
+    std::vector<float> tau(rays.size());
+    WalkCounts counts;
+    march_depths(media, rays, tau, counts);
+    return tau;
+}
+
 Walked walk(const Media& media, const DirectionTransmittance& directions)
 {
     Walked out{rays_from(directions.lattice()), {}, 0.0f};
@@ -75,7 +83,7 @@ Walked walk(const Media& media, const DirectionTransmittance& directions)
 /// Slope for coarse media: depths err by about the root of the depth, times a factor.
 float slope_for(const Media& coarse, const Walked& exact)
 {
-    const std::vector<float> guessed = depths_of(coarse, exact.rays);
+    const std::vector<float> guessed = marched_depths_of(coarse, exact.rays);
     double squares = 0.0;
     double sum = 0.0;
     for (size_t i = 0; i < guessed.size(); ++i) {

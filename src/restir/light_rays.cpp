@@ -35,9 +35,20 @@ void LightRays::trace(const Scene& scene, WalkCounts& counts)
 
 void LightRays::trace(const Surfaces* surfaces, const Media& media, WalkCounts& counts)
 {
+    walk_open(surfaces, media, optical_depths, counts);
+}
+
+void LightRays::guess(const Surfaces* surfaces, const Media& coarse, WalkCounts& counts)
+{
+    walk_open(surfaces, coarse, march_depths, counts);
+}
+
+void LightRays::walk_open(const Surfaces* surfaces, const Media& media, Walk& walk,
+                          WalkCounts& counts)
+{
     depths.resize(queries.size());
     if (!surfaces) {
-        optical_depths(media, queries, depths, counts);
+        walk(media, queries, depths, counts);
         return;
     }
     // Media are walked only where no surface is in the way.
@@ -52,7 +63,7 @@ void LightRays::trace(const Surfaces* surfaces, const Media& media, WalkCounts& 
         places.push_back(i);
     }
     std::vector<float> open_depths(open.size());
-    optical_depths(media, open, open_depths, counts);
+    walk(media, open, open_depths, counts);
     for (size_t i = 0; i < open.size(); ++i) depths[places[i]] = open_depths[i];
 }
 

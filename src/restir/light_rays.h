@@ -24,9 +24,16 @@ struct LightRays {
     void trace(const Scene& scene, WalkCounts& counts);
     /// The same through other media; surfaces may be null.
     void trace(const Surfaces* surfaces, const Media& media, WalkCounts& counts);
+    /// The same through coarse media, whose depths are marched (march_depths), not exact; surfaces
+    /// may be null.
+    void guess(const Surfaces* surfaces, const Media& coarse, WalkCounts& counts);
     [[nodiscard]] size_t size() const { return queries.size(); }
     /// What ray i brings.
     [[nodiscard]] Spectrum value(size_t i) const { return weights[i] * std::exp(-depths[i]); }
+
+  private:
+    using Walk = decltype(optical_depths);
+    void walk_open(const Surfaces* surfaces, const Media& media, Walk& walk, WalkCounts& counts);
 };
 
 /// Optical depth beyond which a contribution is below 1e-7 of the pixel: what it would bring

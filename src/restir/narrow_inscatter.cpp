@@ -40,14 +40,15 @@ NarrowInscatter::NarrowInscatter(const Phase& phase, const EnvironmentNodes& nod
                 light_[slot * count + static_cast<size_t>(j)] = light;
                 sum += light;
             }
-            inscatter_[slot] = sum / static_cast<float>(hats_.count());
+            inscatter_[slot] = PaddedSpectrum(sum / static_cast<float>(hats_.count()));
         }
     });
 }
 
 int64_t NarrowInscatter::memory_bytes() const
 {
-    return static_cast<int64_t>((light_.size() + inscatter_.size()) * sizeof(Spectrum));
+    return static_cast<int64_t>(light_.size() * sizeof(Spectrum) +
+                                inscatter_.size() * sizeof(PaddedSpectrum));
 }
 
 Vec3 NarrowInscatter::view_direction(const EnvironmentNodes& nodes, Vec3 x) const
@@ -79,11 +80,11 @@ Spectrum NarrowInscatter::inscatter(const EnvironmentNodes& nodes, Vec3 x) const
     });
 }
 
-Spectrum NarrowInscatter::directional(const EnvironmentNodes& nodes, Vec3 x, Vec3 wo, Vec3 wi) const
+Spectrum NarrowInscatter::directional(const EnvironmentNodes& nodes, Vec3 x,
+                                      const DirectionHats::Weights& hat) const
 {
     const SmokeLattice& lattice = nodes.lattice();
     const SmokeLattice::Corners corners = lattice.corners(x);
-    const DirectionHats::Weights hat = hats_.at(frames_.at(-wo), wi);
     Spectrum sum(0.0f);
     for (int n = 0; n < 8; ++n) {
         Spectrum light(0.0f);
@@ -101,7 +102,7 @@ Spectrum NarrowInscatter::directional(const EnvironmentNodes& nodes, Vec3 x, Vec
         }
         sum += corners.weight[n] * light;
     }
-    return eval_phase(phase_, wo, wi) * sum;
+    return sum;
 }
 
 }  // namespace mote

@@ -19,8 +19,15 @@ class NarrowInscatter {
     NarrowInscatter(const Phase& phase, const EnvironmentNodes& nodes);
 
     [[nodiscard]] Spectrum inscatter(const EnvironmentNodes& nodes, Vec3 x) const;
-    [[nodiscard]] Spectrum directional(const EnvironmentNodes& nodes, Vec3 x, Vec3 wo,
-                                       Vec3 wi) const;
+    /// The factors of directional(x, wo, wi): hats at a direction and the phase function's value,
+    /// and what is summed over them.
+    [[nodiscard]] DirectionHats::Weights hats_at(Vec3 wo, Vec3 wi) const
+    {
+        return hats_.at(frames_.at(-wo), wi);
+    }
+    [[nodiscard]] float phase_at(Vec3 wo, Vec3 wi) const { return eval_phase(phase_, wo, wi); }
+    [[nodiscard]] Spectrum directional(const EnvironmentNodes& nodes, Vec3 x,
+                                       const DirectionHats::Weights& hat) const;
     [[nodiscard]] int64_t memory_bytes() const;
 
   private:
@@ -32,8 +39,8 @@ class NarrowInscatter {
     LobeHats hats_;
     HatTable table_;  ///< of the transmittances' hats
     FrameField frames_;
-    std::vector<Spectrum> light_;      ///< h_j per slot, hats_.count() each; slot 0 means nothing
-    std::vector<Spectrum> inscatter_;  ///< per slot
+    std::vector<Spectrum> light_;  ///< h_j per slot, hats_.count() each; slot 0 means nothing
+    std::vector<PaddedSpectrum> inscatter_;  ///< per slot
 };
 
 }  // namespace mote

@@ -59,14 +59,15 @@ WideInscatter::WideInscatter(const Phase& phase, const EnvironmentNodes& nodes) 
             const Vec3 d = view_direction(nodes, lattice.position(lattice.nodes[slot]));
             float* row = scattered_.data() + slot * size;
             scatter(d, transmittance.row(static_cast<int32_t>(slot)), row);
-            inscatter_[slot] = transmittance.hats().solid_angle() * sum_of_light(row);
+            inscatter_[slot] =
+                PaddedSpectrum(transmittance.hats().solid_angle() * sum_of_light(row));
         }
     });
 }
 
 int64_t WideInscatter::memory_bytes() const
 {
-    return static_cast<int64_t>(inscatter_.size() * sizeof(Spectrum) +
+    return static_cast<int64_t>(inscatter_.size() * sizeof(PaddedSpectrum) +
                                 scattered_.size() * sizeof(float));
 }
 
@@ -107,11 +108,11 @@ Spectrum WideInscatter::inscatter(const EnvironmentNodes& nodes, Vec3 x) const
     });
 }
 
-Spectrum WideInscatter::directional(const EnvironmentNodes& nodes, Vec3 x, Vec3 wi) const
+Spectrum WideInscatter::directional(const EnvironmentNodes& nodes, Vec3 x,
+                                    const DirectionHats::Weights& hat) const
 {
     const SmokeLattice& lattice = nodes.lattice();
     const SmokeLattice::Corners corners = lattice.corners(x);
-    const DirectionHats::Weights hat = nodes.transmittance->hats().at(wi);
     const size_t size = light_[0].size();
     float sum[4] = {};
     for (int n = 0; n < 8; ++n) {

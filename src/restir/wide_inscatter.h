@@ -15,7 +15,9 @@ class WideInscatter {
     WideInscatter(const Phase& phase, const EnvironmentNodes& nodes);
 
     [[nodiscard]] Spectrum inscatter(const EnvironmentNodes& nodes, Vec3 x) const;
-    [[nodiscard]] Spectrum directional(const EnvironmentNodes& nodes, Vec3 x, Vec3 wi) const;
+    /// `hat`: at wi, of the nodes' hats.
+    [[nodiscard]] Spectrum directional(const EnvironmentNodes& nodes, Vec3 x,
+                                       const DirectionHats::Weights& hat) const;
     [[nodiscard]] int64_t memory_bytes() const;
 
   private:
@@ -28,7 +30,7 @@ class WideInscatter {
     std::vector<float> light_[3];      ///< red, green, blue of L_k; padded like a row
     std::vector<float> direction_[3];  ///< x, y, z of w_k
     std::vector<float> scattered_;     ///< ph(n, w_k) T_k(n): rows per slot, as transmittances
-    std::vector<Spectrum> inscatter_;  ///< per slot; slot 0 means nothing in both
+    std::vector<PaddedSpectrum> inscatter_;  ///< per slot; slot 0 means nothing in both
 };
 
 }  // namespace mote

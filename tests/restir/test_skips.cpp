@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "restir/runs.h"
@@ -56,7 +58,8 @@ void expect_work(const TestScene& test, const LightWork& work)
     EXPECT_EQ(stats.candidates > 0, work.local);
     EXPECT_EQ(stats.emission_integrals > 0, work.emission);
     EXPECT_EQ(stats.light_rays > 0, work.maps || work.directions || work.local);
-    EXPECT_EQ(stats.caches_built, int{work.maps} + int{work.directions} + int{work.local});
+    EXPECT_EQ(stats.caches_built,
+              int{work.maps} + int{work.directions} + int{work.local} + int{work.emission});
 }
 
 TEST(Skips, LightsThatASceneLacksCostNothing)
@@ -191,6 +194,30 @@ TEST(Skips, AnUnchangedFrameBuildsNothing)
     const FrameStats third = stats_of(test, history);
     EXPECT_EQ(third.caches_built, 1);
     EXPECT_EQ(third.caches_reused, first.caches_built - 1);
+}
+
+TEST(Skips, WhereAMediumGlowsIsFoundAgainOnlyWhenThatChanged)
+{
+    TestScene test = test::everything_at_once();
+    FrameHistory history;
+    const FrameStats first = stats_of(test, history);
+    const auto glows = [](const Volume& volume) { return volume.emission_params.is_on(); };
+    auto& volumes = test.scene.media.volumes;
+    const auto flame = std::find_if(volumes.begin(), volumes.end(), glows);
+    ASSERT_NE(flame, volumes.end());
+    // A flame that brightens sends other power from its bricks: these and the light cells are made
+    // anew, and nothing else.
+    (flame->emission_params.emission_scale > 0.0f ? flame->emission_params.emission_scale
+                                                  : flame->emission_params.blackbody_scale) *= 2.0f;
+    const FrameStats second = stats_of(test, history);
+    EXPECT_EQ(second.caches_built, 2);
+    EXPECT_EQ(second.caches_reused, first.caches_built - 2);
+    // One that moves takes its bricks along: they count in its own space.
+    for (Trs& key : flame->world_from_object.keys) key.translate.x += 0.01;
+    finalize(*flame);
+    const FrameStats third = stats_of(test, history);
+    EXPECT_EQ(third.caches_reused, 1);
+    EXPECT_EQ(third.caches_built, first.caches_built - 1);
 }
 
 TEST(Skips, WithoutScatteringThereIsNoWorkOnLight)
