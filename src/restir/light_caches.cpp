@@ -125,7 +125,7 @@ void Builder::add_local() const
         const Volume& volume = scene.media.volumes[i];
         if (!volume.emission_params.is_on()) continue;
         EmissiveBricks bricks = make_emissive_bricks(volume);
-        if (bricks.empty() || !(bricks.total_power > 0.0)) continue;
+        if (bricks.empty()) continue;
         add_emissive_volume(volume, bricks, id++, out.local_lights);
         out.emissive[i] = std::move(bricks);
     }
