@@ -93,7 +93,7 @@ EmissionPlan emit_plume(const EmitterParams& params, double since_start)
                                              Vec3(0.0f, 0.6f * params.speed, 0.0f), params.seed},
                                             since_start);
     // The jet leaves the source smooth and breaks up within the first large eddy.
-    const float break_up = 1.5f * params.turbulence_size / std::max(params.speed, 1e-3f);
+    const float break_up = 1.5f * params.turbulence_size / params.speed;
     const auto fill = [=](ParticleBlock& block, size_t first) {
         set_ages(population, params.lifetime, first, block);
         start_at_source(params, block);

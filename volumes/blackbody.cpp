@@ -66,7 +66,7 @@ Spectrum blackbody_rgb(float temperature)
     static const std::array<Spectrum, steps + 1> table = make_table();
     const float inverse = 1.0f / std::max(static_cast<float>(coolest), temperature);
     const float x = inverse * (static_cast<float>(coolest) * steps);
-    const int i = std::clamp(static_cast<int>(x), 0, steps - 1);
+    const int i = std::min(static_cast<int>(x), steps - 1);
     return glm::mix(table[static_cast<size_t>(i)], table[static_cast<size_t>(i) + 1],
                     x - static_cast<float>(i));
 }

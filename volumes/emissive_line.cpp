@@ -31,8 +31,7 @@ struct EmissiveSpan {
     [[nodiscard]] float distance(float u) const
     {
         const float share = u * before(length);
-        const float depth = rate > 0.0f ? -std::log1p(-share * rate) / rate : share;
-        return t0 + std::min(depth, length * one_minus_epsilon);
+        return t0 + (rate > 0.0f ? -std::log1p(-share * rate) / rate : share);
     }
 };
 
@@ -137,7 +136,6 @@ std::optional<LineSample> sample_emissive_line(const Volume& volume, const Emiss
         } else {
             u = (u - p) / (1.0f - p);
         }
-        u = std::min(u, one_minus_epsilon);
     });
     if (!(chosen.weight > 0.0f)) return std::nullopt;
     LineSample sample;

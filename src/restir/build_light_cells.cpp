@@ -56,7 +56,7 @@ class MainVolume {
 
 LightCells::LightCells(const Media& media, std::span<const LocalLight> lights, Vec3 eye,
                        const LightCellsParams& params)
-    : clusters_(make_light_clusters(lights)), floor_share_(std::clamp(params.floor, 1e-3f, 1.0f))
+    : clusters_(make_light_clusters(lights)), floor_share_(params.floor)
 {
     if (clusters_.ids.empty()) return;
     everything_[1] = clusters_.light_count();
@@ -65,8 +65,7 @@ LightCells::LightCells(const Media& media, std::span<const LocalLight> lights, V
     const int least = std::min({most, 64, clusters_.light_count()});
     const size_t most_cells =
         std::min(params.most_cells, params.most_entries / static_cast<size_t>(least));
-    const SmokeCells smoke =
-        find_smoke_cells(media, std::max(params.edge_voxels, 1.0f), most_cells);
+    const SmokeCells smoke = find_smoke_cells(media, params.edge_voxels, most_cells);
     if (smoke.smoke_count == 0) return;
     // More clusters where cells are few; half the entries is enough before cells are.
     const size_t affordable = params.most_entries / 2 / (smoke.smoke_count + smoke.border_count);
@@ -260,9 +259,8 @@ void LightCells::fill_cell(const Cell& cell, const CutLanes& lanes, Vec3 eye)
         sum += known * weight[n] + by_power * share + by_count;
         // Every entry keeps at least one quantum, those that follow included.
         const uint32_t most = 65536 - (cut.count - 1 - n);
-        before = std::clamp(static_cast<uint32_t>(std::lround(65536.0f * std::min(sum, 1.0f))),
-                            before + 1, most);
-        cdf[n] = static_cast<uint16_t>(std::min(before, 65535u));
+        before = std::clamp(static_cast<uint32_t>(std::lround(65536.0f * sum)), before + 1, most);
+        cdf[n] = static_cast<uint16_t>(before);
     }
 }
 
@@ -294,7 +292,7 @@ void LightCells::fill_inscatter()
                 if (c[axis] + 1 < lattice_.count[axis]) look(position + strides[axis]);
             }
             // A node may sit in a clump's shadow while smoke around it is bright.
-            const float floor = count > 0.0f ? 0.1f * around / count : 0.0f;
+            const float floor = 0.1f * around / count;  // a cell with smoke or next to it has some
             inscatter_[position] = std::max(std::max(scattered_[i], floor), least_inscatter_);
         }
     });

@@ -74,7 +74,7 @@ void add_halved_level(Vec3i fine_count, CoarseExtinction& out)
 /// Fraction of the way after which one coordinate leaves (0, hi).
 [[gnu::always_inline]] inline Float8 exit_fraction(const Float8& d, float from, float hi)
 {
-    return (d > 0.0f ? splat(hi - from) : splat(from)) / (abs(d) + 1e-15f);
+    return (d > 0.0f ? splat(hi - from) : splat(from)) / abs(d);
 }
 
 }  // namespace
@@ -114,7 +114,7 @@ void coarse_optical_depths(const CoarseExtinction& extinction, Vec3 from, const 
     dx *= inside * inv_steps;
     dy *= inside * inv_steps;
     dz *= inside * inv_steps;
-    const Float8 step2 = dx * dx + dy * dy + dz * dz + 1e-20f;
+    const Float8 step2 = dx * dx + dy * dy + dz * dz;
     const Float8 step = step2 * approximate_inv_sqrt(step2);  // in cells
     // Smallest level with step <= 2^level.
     Int8 level = ((bits(step) - 1) >> 23) - 126;

@@ -72,10 +72,10 @@ Combination::Choice Combination::select(const Pixel& pixel, Rng& rng) const
         const Other& other = others_[pixel.first + i];
         const float p_hat = other.p_hat();
         const float u = rng.uniform();
-        if (!(p_hat > 0.0f) || !(other.jacobian > 0.0f)) continue;
+        if (!(p_hat > 0.0f)) continue;  // so where the shift is undefined
         const float m = weight_of(pixel, i, c, p_hat);
         const float weight = m * other.W * other.jacobian;
-        if (!(weight > 0.0f) || !std::isfinite(weight)) continue;
+        if (!std::isfinite(weight)) continue;
         const Spectrum f = other.shadow * other.f;
         choice.color += (other.V * weight) * f;
         const double w = static_cast<double>(weight) * static_cast<double>(p_hat);

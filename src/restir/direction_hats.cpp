@@ -11,7 +11,7 @@ Vec3 DirectionHats::centre(int k) const
     const float u = (static_cast<float>(band) + 0.5f) / static_cast<float>(bands);
     const float v = (static_cast<float>(k % azimuths) + 0.5f) / static_cast<float>(azimuths);
     const float y = 1.0f - 2.0f * u;
-    const float r = std::sqrt(std::max(0.0f, 1.0f - y * y));
+    const float r = std::sqrt(1.0f - y * y);
     return {r * std::sin(2.0f * pi * v), y, r * std::cos(2.0f * pi * v)};
 }
 

@@ -42,7 +42,7 @@ Spectrum source_along(const Media& media, const PixelDomain& domain, Rng& rng)
     float u = 0.0f;
     for (int k = 0; k < bins.count; ++k) {
         // Opposite numbers in neighbouring bins: what is linear in the source cancels out.
-        u = k % 2 == 0 ? rng.uniform() : std::min(1.0f - u, one_minus_epsilon);
+        u = k % 2 == 0 ? rng.uniform() : 1.0f - u;
         const float lost = -std::expm1(-bins.depth_of_bin(k));
         const float share = std::exp(-bins.tau[k]) * lost;
         if (!(share > 0.0f)) continue;

@@ -115,7 +115,7 @@ void finish(const EnvironmentParts& parts, EnvironmentSpot& spot)
     for (const uint32_t pixel : spot.pixels) {
         const Spectrum part = integrate_square(parts, static_cast<int>(pixel % width),
                                                static_cast<int>(pixel / width));
-        weights.push_back(std::max(0.0f, luminance(part)));
+        weights.push_back(luminance(part));
         sum += Vec3d(part);
     }
     // No square that shines may go without samples.

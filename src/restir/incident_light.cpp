@@ -46,14 +46,12 @@ float infinite_inscatter(const FrameDomain& frame, const SampledLight& light, Ve
         sum += luminance(distant.irradiance) * eval_phase(phase, wo, distant.direction) *
                distant.map->transmittance(x);
     }
-    return std::isfinite(sum) && sum > 0.0f ? sum : 0.0f;
+    return sum;
 }
 
 float local_inscatter(const FrameDomain& frame, Vec3 x)
 {
-    if (!frame.samples_local) return 0.0f;
-    const float sum = frame.caches->cells->inscatter(x);
-    return std::isfinite(sum) && sum > 0.0f ? sum : 0.0f;
+    return frame.samples_local ? frame.caches->cells->inscatter(x) : 0.0f;
 }
 
 /// The choice goes first between classes: all local lights together, and each light at infinity.
@@ -76,9 +74,11 @@ Classes make_classes(const FrameDomain& frame, Vec3 x, Vec3 wo)
     out.count = static_cast<int>(frame.infinite.size()) + (frame.samples_local ? 1 : 0);
     for (int i = 0; i < out.count; ++i) out.sum += class_weight(frame, i, x, wo);
     const auto n = static_cast<float>(out.count);
-    const bool known = out.sum > 0.0f && std::isfinite(out.sum);
-    if (!known) out.sum = 0.0f;
-    out.floor = known ? choice_floor * out.sum / n : 1.0f;
+    out.floor = choice_floor * out.sum / n;
+    if (!(out.floor > 0.0f && out.floor < infinity)) {  // nothing is known, or out of range
+        out.sum = 0.0f;
+        out.floor = 1.0f;
+    }
     out.sum += n * out.floor;
     return out;
 }
@@ -140,14 +140,11 @@ float cached_visibility(const FrameDomain& frame, const PathSample& y, Vec3 x,
     constexpr float floor = 1e-3f;
     const SampledLight& light = frame.lights[static_cast<size_t>(y.light)];
     if (light.kind == SampledLightKind::Environment && frame.caches->directions) {
-        const float T = frame.caches->directions->transmittance(x, arrival.wi);
-        return std::isfinite(T) ? std::max(T, floor) : 1.0f;
+        return std::max(frame.caches->directions->transmittance(x, arrival.wi), floor);
     }
     if (light.kind != SampledLightKind::Distant) return 1.0f;
     for (const LightCaches::Distant& distant : frame.caches->distant) {
-        if (distant.light != light.index) continue;
-        const float T = distant.map->transmittance(x);
-        return std::isfinite(T) ? std::max(T, floor) : 1.0f;
+        if (distant.light == light.index) return std::max(distant.map->transmittance(x), floor);
     }
     return 1.0f;
 }
@@ -158,16 +155,16 @@ SampledChoice choose_light(const FrameDomain& frame, Vec3 x, Vec3 wo, double u)
     float pmf = 1.0f;
     if (!frame.infinite.empty()) {
         const Classes classes = make_classes(frame, x, wo);
-        double before = 0.0;
+        double up_to = 0.0;
         for (;; ++index) {
             pmf = class_pmf(frame, classes, index, x, wo);
-            if (u < before + static_cast<double>(pmf) || index + 1 == classes.count) break;
-            before += static_cast<double>(pmf);
+            up_to += static_cast<double>(pmf);
+            if (u < up_to || index + 1 == classes.count) break;
         }
-        u = std::clamp((u - before) / static_cast<double>(pmf), 0.0, 1.0 - 0x1p-53);
     }
     if (frame.samples_local && index-- == 0) {
-        const LightPick pick = frame.caches->cells->sample(x, u);
+        // The first class: u is below its share, so that the quotient is below 1.
+        const LightPick pick = frame.caches->cells->sample(x, u / static_cast<double>(pmf));
         return {pick.light, pmf * pick.pmf};
     }
     return {frame.infinite[static_cast<size_t>(index)], pmf};

@@ -72,7 +72,8 @@ void Builder::add_spots() const
 
 void Builder::add_environment() const
 {
-    if (!sizes.sky || !scene.environment || !(max_component(scene.environment->radiance) > 0.0f)) return;
+    if (!sizes.sky || !scene.environment || !(max_component(scene.environment->radiance) > 0.0f))
+        return;
     const bool same_light =
         previous && previous->parts && is_same(previous->parts->whole, *scene.environment);
     out.parts =
@@ -130,7 +131,7 @@ std::shared_ptr<const EmissiveBricks> Builder::emissive_bricks(size_t i) const
         }
     }
     auto bricks = std::make_shared<const EmissiveBricks>(make_emissive_bricks(volume));
-    if (bricks->empty() || !(bricks->total_power > 0.0)) return nullptr;
+    if (bricks->empty()) return nullptr;
     ++out.built;
     return bricks;
 }

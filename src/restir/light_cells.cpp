@@ -72,7 +72,7 @@ double LightCells::left_share(const LightCluster& node, int index, Vec3 x) const
 {
     const LightCluster& left = clusters_.nodes[static_cast<size_t>(index) + 1];
     const LightCluster& right = clusters_.nodes[static_cast<size_t>(node.right)];
-    const float least2 = sqr(0.125f * lattice_.cell) + 1e-30f;
+    const float least2 = sqr(0.125f * lattice_.cell);
     const float left2 = effective_distance2(left, x, least2);
     const float right2 = effective_distance2(right, x, least2);
     // Powers over squared distances, on their common denominator.
@@ -84,7 +84,7 @@ double LightCells::left_share(const LightCluster& node, int index, Vec3 x) const
 
 LightCells::Descent LightCells::enter(const Row& row, double u)
 {
-    const double scaled = 65536.0 * (u > 0.0 ? std::min(u, 1.0 - 0x1p-53) : 0.0);
+    const double scaled = 65536.0 * u;
     const uint32_t i = count_up_to(row.cdf, row.count, static_cast<uint16_t>(scaled));
     const Share share = share_of(row.cdf, row.count, i);
     return {row.nodes[i], (scaled - share.lo) / share.size, share.size * quantum};
@@ -210,7 +210,7 @@ float LightCells::inscatter(Vec3 x) const
     const float v11 = v[slice + row] + f.x * (v[slice + row + 1] - v[slice + row]);
     const float v0 = v00 + f.y * (v10 - v00);
     const float v1 = v01 + f.y * (v11 - v01);
-    return std::max(v0 + f.z * (v1 - v0), least_inscatter_);
+    return v0 + f.z * (v1 - v0);
 }
 
 size_t LightCells::memory_bytes() const

@@ -32,7 +32,7 @@ float uncertainty(const LightCluster& cluster, const Bounds3& bounds, Vec3 x, fl
     const float far = std::max(glm::length(cluster.centre - x), 1e-15f);
     const float near = std::max(0.0f, std::sqrt(distance2(bounds, x)) - radius);
     // The transmittance of cluster_lanes.h with v = 1/4.
-    const float fade = 1.0f + 0.25f * tau * std::min(1.0f, near / far);
+    const float fade = 1.0f + 0.25f * tau * near / far;
     const float most = cluster.power * inv_4pi / (std::max(sqr(near), blur2) * sqr(sqr(fade)));
     const float size = 0.5f * glm::length(bounds.extent());
     const float spread = size / std::max(near, 1e-15f) + tau * size / far;
@@ -47,7 +47,7 @@ void choose_light_cut(const LightClusters& clusters, const CoarseExtinction& ext
     cut.clear();
     if (clusters.nodes.empty()) return;
     constexpr int steps = 8;
-    const float blur2 = std::max(sqr(0.5f * radius), 1e-30f);
+    const float blur2 = sqr(0.5f * radius);
     std::vector<Candidate> candidates{{0, 0.0f, infinity}};
     candidates.reserve(static_cast<size_t>(most) + 1);
     float total = 0.0f;
@@ -64,7 +64,7 @@ void choose_light_cut(const LightClusters& clusters, const CoarseExtinction& ext
                 if (candidates[i].error > candidates[worst].error) worst = i;
             Candidate& parent = candidates[worst];
             const LightCluster& node = clusters.nodes[static_cast<size_t>(parent.node)];
-            if (node.is_leaf() || !(parent.error > tolerance * std::max(total, 0.0f))) break;
+            if (node.is_leaf() || !(parent.error > tolerance * total)) break;
             total -= parent.fluence;
             parent = {parent.node + 1, 0.0f, 0.0f};
             candidates.push_back({node.right, 0.0f, 0.0f});

@@ -32,9 +32,7 @@ std::vector<DepthQuery> rays_from(const SmokeLattice& lattice)
     const auto nodes = static_cast<uint32_t>(lattice.active_count());
     for (uint32_t i = 0; i < ray_count && nodes > 0; ++i) {
         Rng rng(0, 0, Stream::LightGuess, i, 0);
-        const auto slot =
-            1 +
-            std::min(nodes - 1, static_cast<uint32_t>(rng.uniform() * static_cast<float>(nodes)));
+        const auto slot = 1 + static_cast<uint32_t>(rng.uniform() * static_cast<float>(nodes));
         const Vec3 x = lattice.position(lattice.nodes[slot]);
         const Vec3 offset = lattice.spacing * (rng.uniform3() - 0.5f);
         rays.push_back({x + offset, infinity, sample_sphere(rng.uniform2()), cache_time, infinity});
@@ -80,7 +78,8 @@ Walked walk(const Media& media, const DirectionTransmittance& directions)
     return out;
 }
 
-/// Slope for coarse media: depths err by about the root of the depth, times a factor.
+/// Slope for coarse media: depths err by about the root of the depth, times a factor. Not finite
+/// where nothing errs.
 float slope_for(const Media& coarse, const Walked& exact)
 {
     const std::vector<float> guessed = marched_depths_of(coarse, exact.rays);
@@ -92,7 +91,6 @@ float slope_for(const Media& coarse, const Walked& exact)
         squares += error * error;
         sum += static_cast<double>(guessed[i]);
     }
-    if (!(sum > 0.0) || !(exact.directions_error > 0.0f)) return 0.0f;
     return slope_per_ratio * static_cast<float>(std::sqrt(squares / sum)) / exact.directions_error;
 }
 

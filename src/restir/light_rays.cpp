@@ -70,10 +70,9 @@ void LightRays::walk_open(const Surfaces* surfaces, const Media& media, Walk& wa
 float depth_that_matters(Spectrum weight, float pixel_luminance)
 {
     constexpr float shallowest = 18.0f;
-    if (!(pixel_luminance > 0.0f)) return deepest;
     const float ratio = 1e7f * max_component(glm::abs(weight)) / pixel_luminance;
-    if (!(ratio < 1e30f)) return deepest;
-    return std::clamp(std::log(std::max(ratio, 1.0f)), shallowest, deepest);
+    if (!(ratio < 1e30f)) return deepest;  // as next to nothing
+    return std::clamp(std::log(ratio), shallowest, deepest);
 }
 
 }  // namespace mote

@@ -49,7 +49,7 @@ LobeHats::LobeHats(const Phase& phase, const DirectionHats& shape) : phase_(phas
     for (int i = 0; i < shape.bands; ++i) {
         const float u = (static_cast<float>(i) + 0.5f) / static_cast<float>(shape.bands);
         const float cosine = cosine_at_share(phase, u);
-        const float sine = std::sqrt(std::max(0.0f, 1.0f - cosine * cosine));
+        const float sine = std::sqrt(1.0f - cosine * cosine);
         for (int j = 0; j < shape.azimuths; ++j) {
             const float v = (static_cast<float>(j) + 0.5f) / static_cast<float>(shape.azimuths);
             const float angle = 2.0f * pi * v;

@@ -8,7 +8,7 @@ namespace {
 bool is_usable(const LocalLight& light)
 {
     return light.power > 0.0f && std::isfinite(light.power) && is_finite(light.position) &&
-           std::isfinite(light.spread2) && is_finite(light.facing);
+           std::isfinite(light.spread2);
 }
 
 void place(const PointLight& lamp, LocalLight& out)
@@ -70,7 +70,7 @@ std::vector<LocalLight> local_lights(std::span<const Light> lamps)
 void add_emissive_volume(const Volume& volume, const EmissiveBricks& bricks, int id,
                          std::vector<LocalLight>& lights)
 {
-    if (bricks.empty() || !(bricks.total_power > 0.0)) return;
+    if (bricks.empty()) return;
     const Mat4d world_from_object = matrix(volume.world_from_object.at(0.5f));
     Vec3d sum(0.0);
     double sum2 = 0.0;

@@ -9,7 +9,7 @@ Vec3 direction_or(Vec3 from, Vec3 to, Vec3 otherwise)
 {
     const Vec3 d = to - from;
     const float squared = glm::dot(d, d);
-    return squared > 1e-30f && squared < infinity ? d / std::sqrt(squared) : otherwise;
+    return squared > 1e-30f ? d / std::sqrt(squared) : otherwise;
 }
 
 Vec3 middle_of(const SmokeLattice& lattice)

@@ -17,7 +17,7 @@ float distance_of_share(const RayBins& bins, float share)
     const auto above = std::upper_bound(bins.tau + 1, bins.tau + bins.count, tau) - bins.tau;
     const int k = static_cast<int>(above) - 1;
     const float depth = bins.depth_of_bin(k);
-    const float within = depth > 0.0f ? std::clamp((tau - bins.tau[k]) / depth, 0.0f, 1.0f) : 0.0f;
+    const float within = depth > 0.0f ? (tau - bins.tau[k]) / depth : 0.0f;
     return bins.s[k] + within * (bins.s[k + 1] - bins.s[k]);
 }
 

@@ -34,7 +34,7 @@ std::optional<ShiftedSample> shift_fraction(const PathSample& y, const ShiftEnd&
     const RayPoint point = point_at(from.frame, from.domain, y.u);
     const float lost = collided_share(from.domain.bins);
     const float lost_to = collided_share(to.domain.bins);
-    if (!(point.weight > 0.0f) || !(to.domain.Z() > 0.0f) || !(lost_to > 0.0f)) return std::nullopt;
+    if (!(point.weight > 0.0f) || !(to.domain.Z() > 0.0f)) return std::nullopt;
     const float tau = depth_to(from.frame.scene->media, from.domain.ray, from.domain.bins, point.s);
     const float F = std::min(-std::expm1(-tau) / lost, one_minus_epsilon);
     const float tau_to = -std::log1p(-F * lost_to);
@@ -44,9 +44,8 @@ std::optional<ShiftedSample> shift_fraction(const PathSample& y, const ShiftEnd&
     const int k = static_cast<int>(above) - 1;
     const float width = to.domain.cdf[k + 1] - to.domain.cdf[k];
     const float bin_lost = -std::expm1(-bins.depth_of_bin(k));
-    if (!(width > 0.0f) || !(bin_lost > 0.0f)) return std::nullopt;
-    const float r =
-        std::clamp(-std::expm1(-(tau_to - bins.tau[k])) / bin_lost, 0.0f, one_minus_epsilon);
+    if (!(width > 0.0f)) return std::nullopt;  // as of bins without depth
+    const float r = -std::expm1(-(tau_to - bins.tau[k])) / bin_lost;
     const float u = std::min((to.domain.cdf[k] + r * width) / to.domain.Z(), one_minus_epsilon);
     const float weight_to = to.domain.Z() * std::exp(-bins.tau[k]) * bin_lost / width;
     return ShiftedSample{{u, y.light, y.v}, point.weight / weight_to * lost_to / lost};

@@ -80,7 +80,7 @@ struct Drawing {
                                                *arrival);
         }
         c.known = std::max(least_known, cached_visibility(frame, y, c.x, c.arrival));
-        if (c.density > 0.0f && std::isfinite(c.density)) out.push_back(c);
+        if (c.density > 0.0f) out.push_back(c);
     }
 
     /// By one of the lights' own sampling, which is tried `count` times and chooses it with `pmf`.
@@ -105,12 +105,10 @@ struct Drawing {
         }
         frame.caches->cells->sample(domain.v.p, {u, count}, {picks, count});
         // Among many lights each is a wait for memory: all of them at once.
-        for (size_t i = 0; i < count; ++i) {
-            if (picks[i].light >= 0) prefetch_light(frame, picks[i].light);
-        }
+        for (size_t i = 0; i < count; ++i) prefetch_light(frame, picks[i].light);
         for (size_t i = 0; i < count; ++i) {
             const LightPick& pick = picks[i];
-            if (pick.light >= 0 && pick.pmf > 0.0f) add_point(pick.light, n.local, pick.pmf);
+            add_point(pick.light, n.local, pick.pmf);
         }
     }
 
@@ -140,8 +138,7 @@ struct Drawing {
         for (int i = 0; i < n.bsdf; ++i) {
             // A shifted lattice spreads directions evenly; each alone is as good as random.
             const Vec3 shifted = base + static_cast<float>(i) * lattice_step;
-            const Vec3 numbers = glm::min(shifted - glm::floor(shifted), Vec3(one_minus_epsilon));
-            const auto sample = sample_bsdf(domain.v, domain.wo, numbers);
+            const auto sample = sample_bsdf(domain.v, domain.wo, shifted - glm::floor(shifted));
             const float u = rng.uniform();
             if (!sample) continue;
             const Ray ray{ray_origin(domain.v, sample->wi), sample->wi, domain.time};

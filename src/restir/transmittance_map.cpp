@@ -16,12 +16,6 @@ struct OrientedBox {
     Vec3d hi{0.0};
 };
 
-bool is_usable(const glm::dmat3& m)
-{
-    const double volume = glm::determinant(m);
-    return std::isfinite(volume) && std::abs(volume) > 0.0;
-}
-
 std::optional<OrientedBox> box_of(const Media& media)
 {
     OrientedBox box;
@@ -33,12 +27,12 @@ std::optional<OrientedBox> box_of(const Media& media)
         const Vec3d extent(local.extent());
         const double size =
             std::abs(glm::determinant(glm::dmat3(m))) * extent.x * extent.y * extent.z;
-        if (!(size > largest) || !std::isfinite(size)) continue;
+        if (!(size > largest)) continue;
         largest = size;
         for (int i = 0; i < 3; ++i) box.axes[i] = glm::normalize(Vec3d(m[i]));
         box.centre = Vec3d(m * glm::dvec4(Vec3d(local.centre()), 1.0));
     }
-    if (largest == 0.0 || !is_usable(box.axes)) return std::nullopt;
+    if (largest == 0.0) return std::nullopt;
     // A float origin, so that lookups subtract the very same point.
     box.centre = Vec3d(Vec3(box.centre));
     box.lo = Vec3d(std::numeric_limits<double>::infinity());
@@ -57,7 +51,7 @@ std::optional<OrientedBox> box_of(const Media& media)
         }
     }
     const Vec3d extent = box.hi - box.lo;
-    if (!(glm::length(extent) < 1e15) || !is_finite(Vec3(box.centre))) return std::nullopt;
+    if (!(glm::length(extent) < 1e15)) return std::nullopt;  // or no number
     return box;
 }
 
@@ -99,7 +93,6 @@ RayLattice lattice_for(const OrientedBox& box, Vec3d w, double spacing)
         lattice.offset[i] = (shear * from - first) / spacing;
     }
     lattice.count.z = count_for(depth) + 1;
-    lattice.count.z = std::max(lattice.count.z, 2);
     rows[2][a] = towards / spacing;
     lattice.offset.z = from / spacing;
     lattice.from_box = glm::transpose(rows);
@@ -132,7 +125,7 @@ struct PlaneWriter {
 
     void start()
     {
-        plane = std::clamp(static_cast<int>(std::ceil(t0 / step)), 0, count);
+        plane = static_cast<int>(std::ceil(t0 / step));
         set_next();
     }
 

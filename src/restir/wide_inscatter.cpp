@@ -18,8 +18,8 @@ inline void add_hg(const float* __restrict cos_theta, float g, float weight,
     const float least = sqr(1.0f - a);
     const float scale = weight * inv_4pi * (1.0f - a) * (1.0f + a);
     for (size_t n = 0; n < lanes; ++n) {
-        const float off_axis = std::max(0.0f, 1.0f - sign * cos_theta[n]);
-        const float denom = least + 2.0f * a * off_axis;
+        // Above 0 for rounded cosines too: lobes are wide.
+        const float denom = least + 2.0f * a * (1.0f - sign * cos_theta[n]);
         value[n] += scale / (denom * std::sqrt(denom));
     }
 }
@@ -34,7 +34,7 @@ Vec3 view_direction(const EnvironmentNodes& nodes, Vec3 position)
 {
     const Vec3 d = position - nodes.camera;
     const float squared = glm::dot(d, d);
-    return squared > 1e-30f && squared < infinity ? d / std::sqrt(squared) : Vec3(0.0f);
+    return squared > 1e-30f ? d / std::sqrt(squared) : Vec3(0.0f);
 }
 
 }  // namespace

@@ -55,14 +55,13 @@ void describe(FieldVisitor& v, RestirParams& restir)
     visit(v,
           {.key = "distant_rays",
            .doc = "Exact corrections per pixel and pass towards distant lights, where these are as "
-                  "bright as in the mean pixel; 0: 2, or 1 if light may scatter twice",
+                  "bright as in the mean pixel; 0: 2",
            .range = between(0, 64)},
           restir.distant_rays);
     visit(v,
           {.key = "environment_rays",
            .doc = "Corrections per pixel and pass into the environment, likewise, through coarser "
-                  "media where these are good guesses, few of which are corrected exactly; 0: 8, "
-                  "or 2 if light may scatter twice",
+                  "media where these are good guesses, few of which are corrected exactly; 0: 8",
            .range = between(0, 64)},
           restir.environment_rays);
     visit(

@@ -66,12 +66,11 @@ std::optional<LightSample> sample(const QuadLight& light, Vec3 x, Vec2 u)
     const Vec3 normal_area = glm::cross(light.edge_u, light.edge_v);
     const Vec3 to_point = light.corner + u.x * light.edge_u + u.y * light.edge_v - x;
     const float distance2 = glm::dot(to_point, to_point);
-    if (!(distance2 > 0.0f)) return std::nullopt;
     const float distance = std::sqrt(distance2);
     const Vec3 wi = to_point / distance;
     const float facing = -glm::dot(normal_area, wi);  // area times cosine
     const float cos_area = light.two_sided ? std::abs(facing) : facing;
-    if (!(cos_area > 0.0f)) return std::nullopt;
+    if (!(cos_area > 0.0f)) return std::nullopt;  // nor from the point itself
     return LightSample{wi, distance, light.radiance, distance2 / cos_area, false};
 }
 
@@ -83,12 +82,11 @@ std::optional<LightSample> sample(const TriangleLight& light, Vec3 x, Vec2 u)
     const Vec2 place(root * (1.0f - u.y), root * u.y);
     Vec3 to_point = light.corner + place.x * light.edge_u + place.y * light.edge_v - x;
     const float distance2 = glm::dot(to_point, to_point);
-    if (!(distance2 > 0.0f)) return std::nullopt;
     const float distance = std::sqrt(distance2);
     const Vec3 wi = to_point / distance;
     const float facing = -glm::dot(normal_area, wi);  // area times cosine
     const float cos_area = light.two_sided ? std::abs(facing) : facing;
-    if (!(cos_area > 0.0f)) return std::nullopt;
+    if (!(cos_area > 0.0f)) return std::nullopt;  // nor from the point itself
     // The rounding of a long shadow ray's direction may carry its end through the triangle, too.
     const float margin = light.offset + 0x1p-22f * distance;
     to_point += std::copysign(margin, facing) * glm::normalize(normal_area);

@@ -29,7 +29,6 @@ std::optional<Local> make_local(const SurfaceVertex& v, Vec3 wo)
     local.frame = make_frame(glm::dot(ns, wo) > 0.0f ? ns : sign * v.ng);
     local.wo = wo * local.frame;  // by the transpose
     local.is_front = is_front;
-    if (!(local.wo.z > 0.0f)) return std::nullopt;
     return local;
 }
 
@@ -146,7 +145,8 @@ Lobe eval(const SurfaceVertex& v, const Local& local, Vec3 wo, Vec3 wi)
 Vec3 sample_cosine(Vec2 u)
 {
     const Vec2 d = sample_disk(u);
-    return {d.x, d.y, std::sqrt(std::max(0.0f, 1.0f - glm::dot(d, d)))};
+    // Not a number beyond the rounded rim: lost, as are flat directions.
+    return {d.x, d.y, std::sqrt(1.0f - glm::dot(d, d))};
 }
 
 Vec3 mirror(Vec3 wo, Vec3 h)
@@ -173,8 +173,8 @@ Drawn draw(const SurfaceVertex& v, const Local& local, Vec3 u)
     const Vec3 h = sample_ggx_normal(local.wo, glass.alpha, uv);
     const float cos_o = glm::dot(local.wo, h);
     if (u.z < fresnel_dielectric(cos_o, glass.eta)) return {mirror(local.wo, h)};
-    const float sin2 = std::max(0.0f, 1.0f - sqr(cos_o)) / sqr(glass.eta);
-    const float cos_i = std::sqrt(std::max(0.0f, 1.0f - sin2));
+    // Not a number, and lost, where rounding has it just beyond total reflection.
+    const float cos_i = std::sqrt(1.0f - (1.0f - sqr(cos_o)) / sqr(glass.eta));
     return {-local.wo / glass.eta + (cos_o / glass.eta - cos_i) * h, false};
 }
 

@@ -63,18 +63,16 @@ Vec3 shading_normal(const Mesh& mesh, const InstanceFrame& frame, const SurfaceH
     return glm::dot(ns, ng) < 0.0f ? -ns : ns;
 }
 
-/// Directions on the surface along which u and v of the texture grow, in object space [m]; empty
-/// where the coordinates span no area.
-std::optional<std::pair<Vec3d, Vec3d>> texture_axes(const Mesh& mesh, size_t index,
-                                                    const ObjectTriangle& triangle)
+/// Directions on the surface along which u and v of the texture grow, in object space [m]; no
+/// numbers where the coordinates span no area.
+std::pair<Vec3d, Vec3d> texture_axes(const Mesh& mesh, size_t index, const ObjectTriangle& triangle)
 {
     const glm::uvec3 t = mesh.triangles[index];
     const glm::dvec2 d1(mesh.uvs[t.y] - mesh.uvs[t.x]);
     const glm::dvec2 d2(mesh.uvs[t.z] - mesh.uvs[t.x]);
     const double determinant = d1.x * d2.y - d1.y * d2.x;
-    if (determinant == 0.0 || !std::isfinite(1.0 / determinant)) return std::nullopt;
-    return std::pair((d2.y * triangle.e1 - d1.y * triangle.e2) / determinant,
-                     (d1.x * triangle.e2 - d2.x * triangle.e1) / determinant);
+    return {(d2.y * triangle.e1 - d1.y * triangle.e2) / determinant,
+            (d1.x * triangle.e2 - d2.x * triangle.e1) / determinant};
 }
 
 /// The shading normal turned as a normal map says; `ns` where that would leave the side of ng.
@@ -85,16 +83,13 @@ Vec3 mapped_normal(Vec3 ns, Vec3 ng, const std::pair<Vec3d, Vec3d>& axes,
     const Vec3d along_u = frame.linear * axes.first;
     const Vec3d tangent = along_u - n * glm::dot(n, along_u);
     const double length = glm::length(tangent);
-    if (!(length > 0.0)) return ns;
     Vec3d other = glm::cross(n, tangent / length);
     if (glm::dot(other, frame.linear * axes.second) < 0.0) other = -other;  // mirrored coordinates
     const Vec3d map = 2.0 * Vec3d(picture) - 1.0;
     const Vec3d turned =
-        static_cast<double>(strength) * (map.x * tangent / length + map.y * other) +
-        std::max(map.z, 0.0) * n;
-    const double size = glm::length(turned);
-    if (!(size > 1e-6)) return ns;
-    const Vec3 out(turned / size);
+        static_cast<double>(strength) * (map.x * tangent / length + map.y * other) + map.z * n;
+    const Vec3 out(turned / glm::length(turned));
+    // Axes or pictures without a direction end in no number here.
     return glm::dot(out, ng) > 0.0f ? out : ns;
 }
 
@@ -151,11 +146,9 @@ SurfaceVertex make_vertex(const Surfaces& surfaces, const SurfaceHit& hit, float
         const Vec2 uv = uv_at(mesh, index, hit.u, hit.v);
         vertex.material = material_at(vertex.material, *textures, uv);
         if (textures->normal) {
-            if (const auto axes = texture_axes(mesh, index, triangle)) {
-                vertex.ns =
-                    mapped_normal(vertex.ns, vertex.ng, *axes, frame,
-                                  Vec3(textures->normal->at(uv)), textures->normal_strength);
-            }
+            vertex.ns =
+                mapped_normal(vertex.ns, vertex.ng, texture_axes(mesh, index, triangle), frame,
+                              Vec3(textures->normal->at(uv)), textures->normal_strength);
         }
     }
     vertex.object = hit.object;

@@ -354,5 +354,37 @@ TEST(CurlNoise, TimeIsReducedWithoutLoss)
     EXPECT_LT(glm::length(curl_at(early, p, 1.0f) - curl_at(late, p)), 1e-4f);
 }
 
+/// Without speed, or with next to none, nothing leaves its source; with hardly any drag the exact
+/// solution is that without.
+TEST(EmitterGuards, AllIsFiniteAtTheEndsOfTheRanges)
+{
+    for (const EmitterKind kind : all_kinds) {
+        for (const float speed : {0.0f, 1e-30f, 1.0f}) {
+            EmitterParams params = emitter(kind, 500);
+            params.speed = speed;
+            params.turbulence = 0.0f;
+            for (const float drag : {0.0f, 1e-30f, 1e-12f, 1e-6f, 1e6f}) {
+                params.drag = drag;
+                const ParticleSet set = emit_particles(params, 0.8);
+                ASSERT_GT(set.size(), 0u);
+                for (size_t i = 0; i < set.size(); ++i) {
+                    ASSERT_TRUE(is_finite(set.position[i]) && is_finite(set.velocity[i]))
+                        << static_cast<int>(kind) << " " << speed << " " << drag;
+                    ASSERT_LT(glm::length(set.position[i]), 100.0f);
+                    ASSERT_TRUE(std::isfinite(set.age[i]));
+                }
+            }
+        }
+    }
+    EmitterParams params = emitter(EmitterKind::Burst, 500);
+    params.drag = 0.0f;
+    const ParticleSet without = emit_particles(params, 0.8);
+    params.drag = 1e-7f;
+    const ParticleSet with = emit_particles(params, 0.8);
+    for (size_t i = 0; i < with.size(); ++i) {
+        ASSERT_LT(glm::length(with.position[i] - without.position[i]), 1e-5f) << i;
+    }
+}
+
 }  // namespace
 }  // namespace mote

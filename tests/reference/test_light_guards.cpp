@@ -5,6 +5,7 @@
 #include "core/rng.h"
 #include "core/sampling.h"
 #include "scene/light.h"
+#include "scene/light_tree.h"
 
 namespace mote {
 namespace {
@@ -94,6 +95,57 @@ TEST(LightGuards, ATriangleDoesNotLightWhatTouchesIt)
         EXPECT_NEAR(sample->wi.y, -side, 1e-3f);
         EXPECT_NEAR(sample->distance, 2.0f * offset, 1e-5f);
     }
+}
+
+/// The rounding of a long way is larger than any offset.
+TEST(LightGuards, LongWaysEndClearOfTheTriangle)
+{
+    const TriangleLight triangle{
+        Vec3(0.0f), {1.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 1.0f}, Spectrum(1.0f), true};
+    for (const float height : {1.0f, 1e3f, 1e6f}) {
+        const auto sample = sample_light(triangle, Vec3(0.2f, height, 0.1f), Vec2(0.3f));
+        ASSERT_TRUE(sample);
+        EXPECT_LT(-sample->wi.y * sample->distance, height * (1.0f - 0x1p-23f));
+    }
+}
+
+TEST(LightGuards, FlatLightsShineToTheirFrontAlone)
+{
+    const Vec3 u(1.0f, 0.0f, 0.0f);
+    const Vec3 v(0.0f, 0.0f, 1.0f);  // the front is below
+    const Vec3 edge_on = here + Vec3(5.0f, 0.0f, 0.3f);
+    const Vec3 above = here + Vec3(0.2f, 2.0f, 0.2f);
+    for (const bool two_sided : {false, true}) {
+        const Light lights[] = {TriangleLight{here, u, v, Spectrum(1.0f), two_sided},
+                                QuadLight{here, u, v, Spectrum(1.0f), two_sided}};
+        for (const Light& light : lights) {
+            EXPECT_FALSE(sample_light(light, edge_on, Vec2(0.3f)));
+            EXPECT_EQ(sample_light(light, above, Vec2(0.3f)).has_value(), two_sided);
+            // What is behind a ray is not on it.
+            EXPECT_FALSE(hit_light(light, above, Vec3(0.0f, 1.0f, 0.0f)));
+            EXPECT_EQ(light_pdf(lights[1], above, Vec3(0.0f, 1.0f, 0.0f)), 0.0f);
+        }
+    }
+}
+
+/// Lights in one place, chosen from there, and ones that hardly matter.
+TEST(LightTreeGuards, ChoicesAreADistribution)
+{
+    const Bounds3 at{here, here};
+    const Bounds3 there{here + 1.0f, here + 1.0f};
+    const std::vector<LightTree::Item> all[] = {{{0, at, 1.0f}, {1, at, 2.0f}},
+                                                {{0, at, 1.0f}, {1, there, 1e-20f}},
+                                                {{0, at, 1e-30f}, {1, there, 1e30f}}};
+    for (const std::vector<LightTree::Item>& items : all) {
+        const LightTree tree(items);
+        for (const Vec3& x : {here, here + 1.0f, here + 10.0f}) {
+            EXPECT_GE(tree.pmf(0, x), 0.99e-5f);
+            EXPECT_GE(tree.pmf(1, x), 0.99e-5f);
+            EXPECT_NEAR(tree.pmf(0, x) + tree.pmf(1, x), 1.0f, 1e-6f);
+            EXPECT_TRUE(std::isfinite(tree.importance(x))) << tree.importance(x);
+        }
+    }
+    EXPECT_TRUE(std::isfinite(LightTree({{0, at, 1.0f}}).importance(here)));
 }
 
 }  // namespace
