@@ -55,7 +55,8 @@ PrepareNeeds needs_of(const SceneDescription& scene)
     const bool shows_motion = parse_aovs(scene.output.aovs).needs_motion();
     const ReuseMode reuse = scene.render.restir.reuse;
     const bool follows_motion = scene.render.estimator == EstimatorKind::Restir &&
-                                (reuse == ReuseMode::Temporal || reuse == ReuseMode::Both);
+                                (reuse == ReuseMode::Temporal || reuse == ReuseMode::Both ||
+                                 reuses_paths_in_time(scene.render.restir));
     PrepareNeeds needs;
     needs.velocity = shows_motion || follows_motion;
     needs.velocity_may_be_missing = !shows_motion;  // then reuse is only noisier

@@ -44,6 +44,12 @@ enum class Stream : uint32_t {
     LightGuess,
     PixelRays,
     SeenLamps,
+    PathPrefix,
+    PathLight,
+    PathSuffix,
+    PathChoice,
+    PathTemporal,
+    PathSpatial,
 };
 
 /// Counter-based generator: the n-th number of a stream is a pure function of its key and n, so

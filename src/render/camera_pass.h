@@ -38,7 +38,8 @@ struct PassInputs {
     const ScatterNodes* nodes = nullptr;  ///< for previews; null: none
     bool shares_paths = false;            ///< of many events: see shares_paths()
     bool paths_bring_sky = false;         ///< see paths_bring_sky()
-    PixelSplits split{};                  ///< where pixels take several camera rays
+    Buffer2D<Spectrum>* path_light = nullptr;  ///< of reused paths, by pass; null: none are reused
+    PixelSplits split{};                       ///< where pixels take several camera rays
 };
 
 /// One pixel's pass: where, and which.

@@ -167,6 +167,7 @@ void FrameHistory::expect_no_more()
 bool uses_history(const RenderDescription& render)
 {
     if (render.estimator != EstimatorKind::Restir) return false;
+    if (render.path.max_bounces > 1 && reuses_paths_in_time(render.restir)) return true;
     switch (render.restir.reuse) {
         case ReuseMode::Off:
         case ReuseMode::Spatial:

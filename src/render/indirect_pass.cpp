@@ -38,14 +38,6 @@ TraceContext context_with(const PassInputs& inputs, const CachedGuesses& guesses
             guesses.guide()};
 }
 
-/// How many of `count` paths a ray is worth on which a share `lost` of the light collides: in
-/// proportion to it, but where smoke is thin more, as a few heavy paths would show as spots.
-float paths_worth(float lost, int count)
-{
-    const float worth = std::max(lost * static_cast<float>(count), std::sqrt(lost));
-    return worth > 1.0f ? std::round(worth) : worth;  // of 2.5 paths, 2 or 3 would be noise
-}
-
 PathVertex first_vertex(const ScatterEvent& event, Spectrum weight, int owner)
 {
     PathVertex v;
@@ -60,11 +52,17 @@ PathVertex first_vertex(const ScatterEvent& event, Spectrum weight, int owner)
 
 }  // namespace
 
+float paths_worth(float lost, int count)
+{
+    const float worth = std::max(lost * static_cast<float>(count), std::sqrt(lost));
+    return worth > 1.0f ? std::round(worth) : worth;  // of 2.5 paths, 2 or 3 would be noise
+}
+
 bool shares_paths(const Scene& scene, const RenderDescription& render)
 {
     const RestirParams& params = render.restir;
-    return params.indirect != IndirectLight::Paths && params.corrections &&
-           render.path.max_bounces > 1 && is_still_but_for_camera(scene) &&
+    return params.indirect_reuse == IndirectReuse::Off && params.indirect != IndirectLight::Paths &&
+           params.corrections && render.path.max_bounces > 1 && is_still_but_for_camera(scene) &&
            !paths_bring_sky(scene, render);
 }
 
@@ -73,7 +71,8 @@ bool paths_bring_sky(const Scene& scene, const RenderDescription& render)
     // Fewer events cut paths that have not yet found it.
     constexpr int enough_bounces = 8;
     const RestirParams& params = render.restir;
-    const bool is_asked = params.indirect == IndirectLight::Auto && params.corrections &&
+    const bool is_asked = params.indirect == IndirectLight::Auto &&
+                          params.indirect_reuse == IndirectReuse::Off && params.corrections &&
                           params.control_variate && render.path.max_bounces >= enough_bounces;
     return is_asked && scene.environment && !scene.environment->map && scene.lights.empty() &&
            !scene.surfaces &&
@@ -91,9 +90,10 @@ void add_indirect(const PassInputs& inputs, const PassKey& key, const PixelDomai
     if (inputs.nodes) {
         sample.indirect = scatter_along(*inputs.nodes, scene.media, domain.ray, domain.bins);
     }
+    if (inputs.path_light) sample.indirect = inputs.path_light->at(key.x, key.y);
     const float depth = domain.bins.depth();
     const float lost = surface ? 1.0f : -std::expm1(-depth);
-    const bool surface_only = inputs.nodes != nullptr;
+    const bool surface_only = inputs.nodes || inputs.path_light;
     bool truncated = false;
     if (lost > 0.0f && (surface || !surface_only)) {
         Rng rng = pass_rng(inputs, key, Stream::Indirect);

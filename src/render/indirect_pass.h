@@ -7,6 +7,10 @@
 
 namespace mote {
 
+/// How many of `count` paths a ray is worth on which a share `lost` of the light collides: in
+/// proportion to it, but where smoke is thin more, as a few heavy paths would show as spots.
+[[nodiscard]] float paths_worth(float lost, int count);
+
 /// Whether a frame's pixels share paths of many events; its light caches then need mean extinction.
 [[nodiscard]] bool shares_paths(const Scene& scene, const RenderDescription& render);
 
@@ -18,9 +22,10 @@ namespace mote {
 
 /// Light scattered twice and more along a pixel's ray, by the path tracer from exact first events
 /// on: stratified free flights, each worth the share of light that collides; where a surface ends
-/// the ray, that is all. What media scatter first comes from nodes in previews; where paths are
-/// shared, first events go to `first` under `owner`, for light_shared_paths. Does nothing if light
-/// scatters only once. `surface`: that ends the ray; may be null.
+/// the ray, that is all. What media scatter first comes from nodes in previews, from
+/// `path_light` where paths are reused; where they are shared, first events go to `first` under
+/// `owner`, for light_shared_paths. Does nothing if light scatters only once. `surface`: that ends
+/// the ray; may be null.
 void add_indirect(const PassInputs& inputs, const PassKey& key, const PixelDomain& domain,
                   const SurfaceVertex* surface, int owner, std::vector<PathVertex>& first,
                   FilmSample& sample, PassCounts& counts);

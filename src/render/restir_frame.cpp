@@ -53,7 +53,7 @@ int64_t pixel_passes(const RenderDescription& render)
 size_t history_bytes(const FrameHistory::Impl& history)
 {
     const FinishedPass& pass = history.before;
-    return pass.domains.memory_bytes() +
+    return pass.domains.memory_bytes() + history.paths.memory_bytes() +
            (pass.reservoirs.size() + pass.surface_reservoirs.size()) * sizeof(Reservoir) +
            pass.surfaces.size() * sizeof(SurfaceDomain) + history.pixels.size() * sizeof(PixelFilm);
 }
@@ -93,6 +93,8 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
             {render.restir.node_paths, render.restir.node_spacing, render.samples, render.seed});
         stats.cache_cpu_seconds += nodes->cpu_seconds;
     }
+    Buffer2D<Spectrum> path_light;
+    if (plan.paths) path_light = {scene.camera.width, scene.camera.height};
     const PassInputs inputs{domain,
                             render,
                             aovs,
@@ -100,13 +102,14 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
                             nodes ? &*nodes : nullptr,
                             shares && history.caches->extinction,
                             brings_sky,
+                            plan.paths ? &path_light : nullptr,
                             find_split_pixels(scene, domain.params.edge_strata)};
     PassCounts counts;
     bool finished = false;
     if (plan.reuses_samples()) {
         history.pixels = {};
         finished = render_reusing_passes(inputs, plan, control, history.before, film, counts,
-                                         stats.dropped_non_finite, history.pixels);
+                                         stats.dropped_non_finite, history.pixels, history.paths);
     } else {
         history.before = {};
         const Camera& camera = scene.camera;
@@ -119,6 +122,7 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
             render_independent_passes(inputs, control, film, counts, stats.dropped_non_finite,
                                       keeps_passes ? &history.pixels : nullptr);
     }
+    if (!plan.paths) history.paths = {};
     history.last = keeps_history ? domain : FrameDomain{};
     stats.truncated_paths = counts.truncated;
     stats.camera_rays = counts.bins.rays;

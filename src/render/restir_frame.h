@@ -3,6 +3,7 @@
 #include "render/camera_pass.h"
 #include "render/frame.h"
 #include "render/march_frame.h"
+#include "render/path_pass.h"
 #include "restir/pass_state.h"
 
 namespace mote {
@@ -18,6 +19,7 @@ struct FrameHistory::Impl {
     FrameDomain last;            ///< of the frame before, if a next one may reuse its samples
     FinishedPass before;         ///< its last pass, if that kept samples
     Buffer2D<PixelFilm> pixels;  ///< all passes since something changed, if they are accumulated
+    FinishedPaths paths;         ///< of light of many events, if paths are reused
     bool is_last = false;        ///< no frame follows
     MarchHistory march;          ///< of the ray marcher
 };

@@ -286,6 +286,7 @@ ReusePlan plan_reuse(const FrameDomain& domain, const RenderDescription& render,
         plan.surface_temporal = plan.keeps_passes && !plan.accumulates &&
                                 render.path.max_bounces > 0 && domain.scene->surfaces &&
                                 domain.caches->local_lights.size() >= many_lamps;
+        plan.paths = !plan.accumulates && reuses_paths(*domain.scene, render);
         return plan;
     }
     if (render.path.max_bounces == 0) return {};
@@ -297,12 +298,14 @@ ReusePlan plan_reuse(const FrameDomain& domain, const RenderDescription& render,
     plan.spatial = spatial && domain.has_sampled_lights();
     plan.surface_temporal = temporal && domain.scene->surfaces;
     plan.surface_spatial = spatial && domain.scene->surfaces;
+    plan.paths = reuses_paths(*domain.scene, render);
     return plan;
 }
 
 bool render_reusing_passes(const PassInputs& inputs, const ReusePlan& plan,
                            const FrameControl& control, FinishedPass& before, Film& film,
-                           PassCounts& counts, int64_t& dropped, Buffer2D<PixelFilm>& kept)
+                           PassCounts& counts, int64_t& dropped, Buffer2D<PixelFilm>& kept,
+                           FinishedPaths& paths)
 {
     const FrameDomain& frame = inputs.domain;
     const int width = frame.scene->camera.width;
@@ -324,6 +327,10 @@ bool render_reusing_passes(const PassInputs& inputs, const ReusePlan& plan,
         if (frame.scene->surfaces) {
             now.surfaces = Buffer2D<SurfaceDomain>(width, height);
             now.surface_reservoirs = Buffer2D<Reservoir>(width, height);
+        }
+        if (plan.paths) {
+            light_reused_paths(
+                inputs, pass, [&](const auto& f) { run.for_tiles(f); }, paths, *inputs.path_light);
         }
         const DomainStore* old_rays = keeps_rays ? &before.domains : nullptr;
         run.for_tiles([&](const Tile& tile, PassCounts& n) {

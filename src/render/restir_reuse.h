@@ -11,10 +11,14 @@ struct ReusePlan {
     bool spatial = false;
     bool surface_temporal = false;
     bool surface_spatial = false;
+    bool paths = false;         ///< of light of many events, see light_reused_paths
     bool keeps_passes = false;  ///< this frame's passes may count for the next frames too
     bool accumulates = false;   ///< and those of the frames before count for this one
 
-    [[nodiscard]] bool reuses_samples() const { return temporal || spatial || reuses_surfaces(); }
+    [[nodiscard]] bool reuses_samples() const
+    {
+        return temporal || spatial || paths || reuses_surfaces();
+    }
     [[nodiscard]] bool reuses_surfaces() const { return surface_temporal || surface_spatial; }
 };
 
@@ -29,10 +33,11 @@ struct ReusePlan {
 
 /// All passes of a frame with reuse: each in whole-image steps that read frozen buffers. `before`
 /// is the last pass of the frame before (empty at the start and after cuts) and becomes the last
-/// pass of this one. `kept` becomes the frame's passes if the plan says so. False if stopped.
+/// pass of this one. `kept` becomes the frame's passes if the plan says so; `paths` are those of
+/// the pass before, and become those of the last one. False if stopped.
 [[nodiscard]] bool render_reusing_passes(const PassInputs& inputs, const ReusePlan& plan,
                                          const FrameControl& control, FinishedPass& before,
                                          Film& film, PassCounts& counts, int64_t& dropped,
-                                         Buffer2D<PixelFilm>& kept);
+                                         Buffer2D<PixelFilm>& kept, FinishedPaths& paths);
 
 }  // namespace mote

@@ -87,7 +87,8 @@ Combination::Choice Combination::select(const Pixel& pixel, Rng& rng) const
         }
     }
     choice.out.r = stream.finish();
-    if (rules_.averages_V && stream.w_sum > 0.0) V = static_cast<float>(visible_sum / stream.w_sum);
+    if (rules_.averages_V && stream.choice.w_sum > 0.0)
+        V = static_cast<float>(visible_sum / stream.choice.w_sum);
     choice.out.r.V = V;
     return choice;
 }

@@ -17,22 +17,33 @@ struct Reservoir {
 };
 static_assert(sizeof(Reservoir) <= 48);
 
+/// One of a stream of things, chosen in proportion to their weights.
+struct WeightedChoice {
+    double w_sum = 0.0;
+
+    /// Whether the new one takes the place of the one chosen so far; u in [0,1). A weight that is
+    /// not above 0 (or not finite) is never chosen.
+    bool add(double w, float u)
+    {
+        if (!(w > 0.0) || !std::isfinite(w)) return false;
+        w_sum += w;
+        return static_cast<double>(u) * w_sum < w;
+    }
+};
+
 /// Weighted reservoir being filled. Streaming RIS: Bitterli et al. 2020, Alg. 3.
 struct RisStream {
     PathSample y;
     float p_hat_y = 0.0f;
     float age_y = 0.0f;
-    double w_sum = 0.0;
+    WeightedChoice choice;
     float M = 0.0f;
 
     /// w is the full resampling weight, MIS factor and Jacobian included. u in [0,1).
-    /// A candidate whose w is not above 0 (or not finite) is never selected. M is counted apart:
-    /// see `count`.
+    /// M is counted apart: see `count`.
     bool add(const PathSample& x, float p_hat, double w, float age, float u)
     {
-        if (!(w > 0.0) || !std::isfinite(w)) return false;
-        w_sum += w;
-        if (static_cast<double>(u) * w_sum >= w) return false;
+        if (!choice.add(w, u)) return false;
         y = x;
         p_hat_y = p_hat;
         age_y = age;
@@ -45,7 +56,7 @@ struct RisStream {
 
     [[nodiscard]] Reservoir finish() const
     {
-        const double W = p_hat_y > 0.0f ? w_sum / static_cast<double>(p_hat_y) : 0.0;
+        const double W = p_hat_y > 0.0f ? choice.w_sum / static_cast<double>(p_hat_y) : 0.0;
         return {y, p_hat_y, static_cast<float>(W), M, age_y, 1.0f};
     }
 };

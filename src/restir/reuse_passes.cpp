@@ -12,13 +12,13 @@ namespace {
 constexpr float still_cap = 16.0f;
 constexpr float moving_cap = 1.0f;
 
+}  // namespace
+
 float cap_of(const TemporalParams& params, bool still)
 {
     if (params.cap > 0.0f) return params.cap;
     return still ? still_cap : moving_cap;
 }
-
-}  // namespace
 
 PixelRng after_turn(const PixelRng& rng)
 {

@@ -66,6 +66,9 @@ void reuse_in_space(const PassView& pass, const Tile& tile, const PixelRng& rng,
 void shade_chosen(const PassView& pass, const Tile& tile, Buffer2D<Spectrum>& colors,
                   WalkCounts& walks);
 
+/// Most confidence that history may have. `still`: nothing changed.
+[[nodiscard]] float cap_of(const TemporalParams& params, bool still);
+
 /// The rules that the frame's parameters stand for.
 [[nodiscard]] CombineRules temporal_rules(const RestirParams& params, bool still);
 [[nodiscard]] CombineRules spatial_rules(const RestirParams& params);

@@ -11,11 +11,11 @@ float collided_share(const RayBins& bins)
     return -std::expm1(-bins.depth());
 }
 
-std::optional<ShiftedSample> shift_world(const PathSample& y, const ShiftEnd& from,
-                                         const ShiftEnd& to, const RayMap& map)
+std::optional<ShiftedNumber> shift_world(float u, const ShiftEnd& from, const ShiftEnd& to,
+                                         const RayMap& map)
 {
     if (!map.is_usable()) return std::nullopt;
-    const RayPoint point = point_at(from.frame, from.domain, y.u);
+    const RayPoint point = point_at(from.frame, from.domain, u);
     if (!(point.weight > 0.0f)) return std::nullopt;
     const std::optional<RayNumber> here = number_at(from.frame, from.domain, point.s);
     const double t = from.domain.bins.t0 + static_cast<double>(point.s);
@@ -25,13 +25,12 @@ std::optional<ShiftedSample> shift_world(const PathSample& y, const ShiftEnd& fr
     if (!here || !there) return std::nullopt;
     const float jacobian = map.slope * there->density / here->density;
     if (!(jacobian > 0.0f) || !std::isfinite(jacobian)) return std::nullopt;
-    return ShiftedSample{{there->u, y.light, y.v}, jacobian};
+    return ShiftedNumber{there->u, jacobian};
 }
 
-std::optional<ShiftedSample> shift_fraction(const PathSample& y, const ShiftEnd& from,
-                                            const ShiftEnd& to)
+std::optional<ShiftedNumber> shift_fraction(float u, const ShiftEnd& from, const ShiftEnd& to)
 {
-    const RayPoint point = point_at(from.frame, from.domain, y.u);
+    const RayPoint point = point_at(from.frame, from.domain, u);
     const float lost = collided_share(from.domain.bins);
     const float lost_to = collided_share(to.domain.bins);
     if (!(point.weight > 0.0f) || !(to.domain.Z() > 0.0f)) return std::nullopt;
@@ -46,9 +45,9 @@ std::optional<ShiftedSample> shift_fraction(const PathSample& y, const ShiftEnd&
     const float bin_lost = -std::expm1(-bins.depth_of_bin(k));
     if (!(width > 0.0f)) return std::nullopt;  // as of bins without depth
     const float r = -std::expm1(-(tau_to - bins.tau[k])) / bin_lost;
-    const float u = std::min((to.domain.cdf[k] + r * width) / to.domain.Z(), one_minus_epsilon);
+    const float u_to = std::min((to.domain.cdf[k] + r * width) / to.domain.Z(), one_minus_epsilon);
     const float weight_to = to.domain.Z() * std::exp(-bins.tau[k]) * bin_lost / width;
-    return ShiftedSample{{u, y.light, y.v}, point.weight / weight_to * lost_to / lost};
+    return ShiftedNumber{u_to, point.weight / weight_to * lost_to / lost};
 }
 
 }  // namespace
@@ -66,20 +65,28 @@ RayMap make_ray_map(const Ray& from, const Ray& to, Vec3 motion)
     return {glm::dot(offset, Vec3d(to.d)), glm::dot(from.d, to.d)};
 }
 
+std::optional<ShiftedNumber> shift_number(ShiftKind kind, float u, const ShiftEnd& from,
+                                          const ShiftEnd& to, const RayMap& map)
+{
+    switch (kind) {
+        case ShiftKind::RandomNumbers:
+            if (!(from.domain.Z() > 0.0f) || !(to.domain.Z() > 0.0f)) return std::nullopt;
+            return ShiftedNumber{u, 1.0f};
+        case ShiftKind::World:
+            return shift_world(u, from, to, map);
+        case ShiftKind::Fraction:
+            return shift_fraction(u, from, to);
+    }
+    return std::nullopt;
+}
+
 std::optional<ShiftedSample> shift(ShiftKind kind, const PathSample& y, const ShiftEnd& from,
                                    const ShiftEnd& to, const RayMap& map)
 {
     if (!has_equal_measure(from.frame, to.frame, y.light)) return std::nullopt;
-    switch (kind) {
-        case ShiftKind::RandomNumbers:
-            if (!(from.domain.Z() > 0.0f) || !(to.domain.Z() > 0.0f)) return std::nullopt;
-            return ShiftedSample{y, 1.0f};
-        case ShiftKind::World:
-            return shift_world(y, from, to, map);
-        case ShiftKind::Fraction:
-            return shift_fraction(y, from, to);
-    }
-    return std::nullopt;
+    const std::optional<ShiftedNumber> number = shift_number(kind, y.u, from, to, map);
+    if (!number) return std::nullopt;
+    return ShiftedSample{{number->u, y.light, y.v}, number->jacobian};
 }
 
 }  // namespace mote

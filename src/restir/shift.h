@@ -13,6 +13,12 @@ struct ShiftedSample {
     float jacobian = 1.0f;  ///< |du'/du| > 0
 };
 
+/// A ray's random number in another domain.
+struct ShiftedNumber {
+    float u = 0.0f;
+    float jacobian = 1.0f;  ///< |du'/du| > 0
+};
+
 /// How points of one ray go to another: distance t' = offset + slope t, the projection of the moved
 /// point on the new ray. Affine, so its inverse is exact. slope is the cosine between the rays.
 struct RayMap {
@@ -41,16 +47,21 @@ struct ShiftEnd {
 /// neither frame could have made the other's sample.
 [[nodiscard]] bool has_equal_measure(const FrameDomain& from, const FrameDomain& to, int light);
 
-/// Takes a sample from one domain to another. The light's part is copied (its measure does not
-/// depend on the pixel); the distance goes by `kind`:
+/// Takes a distance from one domain to another, by `kind`:
 ///   RandomNumbers  u' = u. Jacobian 1.
 ///   World          the point, moved by `map`, is found again: J = (slope sigma_t' T' / w') /
 ///                  (sigma_t T / w), with w the weight of RayPoint.
 ///   Fraction       F(s') = F(s), F the share of collisions before s: J = (w / w') (L' / L), L the
 ///                  ray's share of light that collides.
-/// Empty where the map is not defined: no medium on either side, or a light that is of another kind
-/// in the other frame. Shifting back by the inverse map
-/// gives the sample again, up to rounding.
+/// Empty where the map is not defined: no medium on either side. Shifting back by the inverse map
+/// gives the number again, up to rounding.
+[[nodiscard]] std::optional<ShiftedNumber> shift_number(ShiftKind kind, float u,
+                                                        const ShiftEnd& from, const ShiftEnd& to,
+                                                        const RayMap& map);
+
+/// Takes a sample from one domain to another: its distance as above; the light's part is copied, as
+/// its measure does not depend on the pixel. Empty also where the light is of another kind in the
+/// other frame.
 [[nodiscard]] std::optional<ShiftedSample> shift(ShiftKind kind, const PathSample& y,
                                                  const ShiftEnd& from, const ShiftEnd& to,
                                                  const RayMap& map);

@@ -11,6 +11,8 @@ constexpr std::array surface_mis_names = {"auto", "pairwise", "balance", "consta
 constexpr std::array surface_visibility_names = {"exact", "none", "reused", "weighted"};
 constexpr std::array visibility_names = {"exact", "cached", "none"};
 constexpr std::array indirect_names = {"auto", "paths", "shared"};
+constexpr std::array indirect_reuse_names = {"off", "temporal", "spatial", "both"};
+constexpr std::array indirect_suffix_names = {"traced", "biased-validated"};
 constexpr std::array preset_names = {"default",
                                      "textbook",
                                      "preview",
@@ -78,6 +80,23 @@ void describe(FieldVisitor& v, RestirParams& restir)
              "from which pixels of a tile share all that is behind the first event; auto: "
              "shared, unless more than the camera moves while the shutter is open"},
         restir.indirect, indirect_names);
+    visit_choice(
+        v,
+        {.key = "indirect_reuse",
+         .doc =
+             "Reservoirs of paths of two and more events in media that a pixel combines with its "
+             "own, instead of sharing paths; `shift`, `mis`, `temporal` and `spatial` hold for "
+             "them, too. 350 bytes per pixel of smoke for history; a walk per neighbour where "
+             "lobes are narrow. off wherever more than the camera moves while the shutter is "
+             "open"},
+        restir.indirect_reuse, indirect_reuse_names);
+    visit_choice(
+        v,
+        {.key = "indirect_suffix",
+         .doc = "What history has found behind a path's second event, where media, lights or "
+                "surfaces have changed: traced again, then and now; or biased-validated: kept, but "
+                "dropped where one in four is traced again and disagrees (biased: lags)"},
+        restir.indirect_suffix, indirect_suffix_names);
     visit(v,
           {.key = "node_paths",
            .doc =

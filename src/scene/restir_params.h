@@ -36,6 +36,22 @@ enum class IndirectLight {
     Shared,  ///< paths whose later vertices pixels share
 };
 
+/// Which paths of light scattered twice and more a pixel combines with its own.
+enum class IndirectReuse {
+    Off,       ///< none: see IndirectLight
+    Temporal,  ///< those of the pixel it came from, one pass ago
+    Spatial,   ///< those of neighbours
+    Both,
+};
+
+/// What becomes of what lies behind a path's second vertex where media, lights or surfaces have
+/// changed since.
+enum class IndirectSuffix {
+    Traced,           ///< it is traced again, with the same random numbers, then and now: unbiased
+    BiasedValidated,  ///< its light is kept; a quarter of the histories are checked by tracing
+                      ///< again, and dropped if that disagrees (Ouyang et al. 2021): biased
+};
+
 /// What the target function knows about shadows.
 enum class TargetVisibility {
     Exact,   ///< closed-form transmittance, a ray per evaluation; nothing left to shade
@@ -108,6 +124,8 @@ struct RestirParams {
                                   ///< 0: see distant_rays_of
     int environment_rays = 0;     ///< and into the environment; 0: see environment_rays_of
     IndirectLight indirect = IndirectLight::Auto;
+    IndirectReuse indirect_reuse = IndirectReuse::Off;
+    IndirectSuffix indirect_suffix = IndirectSuffix::Traced;
     int indirect_paths = 16;    ///< paths of two and more events per pass
     float node_paths = 1.0f;    ///< previews: paths from nodes per pass and pixel of smoke
     float node_spacing = 0.0f;  ///< previews: [m]; 0: by density and pixel size
@@ -198,6 +216,12 @@ struct RestirParams {
     return false;
 }
 
+/// Whether paths of many events of the frame before take part.
+[[nodiscard]] inline bool reuses_paths_in_time(const RestirParams& p)
+{
+    return p.indirect_reuse == IndirectReuse::Temporal || p.indirect_reuse == IndirectReuse::Both;
+}
+
 /// Whether images of these parameters have the right mean; the others are known to be biased.
 [[nodiscard]] inline bool is_unbiased(const RestirParams& p)
 {
@@ -207,7 +231,11 @@ struct RestirParams {
         p.visibility != TargetVisibility::None && p.mis != ReuseMis::Constant;
     // `auto` may reuse surfaces' samples.
     const bool surfaces_are_right = p.reuse == ReuseMode::Off || is_surface_reuse_unbiased(p);
-    return p.corrections && (!reuses || reuse_is_right) && surfaces_are_right;
+    const bool paths_are_right =
+        p.indirect_reuse == IndirectReuse::Off ||
+        (p.mis != ReuseMis::Constant &&
+         (!reuses_paths_in_time(p) || p.indirect_suffix == IndirectSuffix::Traced));
+    return p.corrections && (!reuses || reuse_is_right) && surfaces_are_right && paths_are_right;
 }
 
 }  // namespace mote
