@@ -11,7 +11,8 @@
 namespace mote {
 
 /// A pass's paths that later ones may reuse, and what they depend on. Everything per pixel: 76
-/// bytes of reservoir, 56 of domain and 12 for each bin edge (about 30 on rays through smoke).
+/// bytes of reservoir, 56 of domain and 12 for each bin edge (about 30 on rays through smoke): 500
+/// in smoke, 132 elsewhere.
 struct FinishedPaths {
     FrameDomain frame;
     LightSampler lights;

@@ -149,7 +149,7 @@ void expect_unbiased(const PathCase& scene, const PathEffort& effort)
 
 std::vector<Scene> narrow_frames(int count)
 {
-    std::vector<Scene> frames = test::everything_moves_frames(count);
+    std::vector<Scene> frames = test::sun_and_sky_frames(count);
     for (Scene& scene : frames) {
         scene.media.volumes[0].phase = {0.88f, -0.3f, 0.2f};
         scene.media.volumes[0].albedo = Spectrum(0.99f);
@@ -267,6 +267,24 @@ TEST(PathReuse, LeavesAccumulatedStillsAlone)
     (void)render_frame(frames[1], render, {}, history, nullptr, stats);
     EXPECT_EQ(stats.neighbours_used, 0);
     EXPECT_TRUE(history.impl().paths.empty());
+}
+
+/// What history found is kept where nothing has changed, whatever the rule; else the rules differ.
+TEST(PathReuse, TracesSuffixesAgainOnlyWhereSomethingHasChanged)
+{
+    for (const bool still : {true, false}) {
+        const std::vector<Scene> frames =
+            still ? test::still_frames(3) : test::evolving_smoke_frames(3);
+        const test::FrameCaches caches = test::make_frame_caches(frames);
+        RenderDescription render = description_of(frames.back(), 4, EstimatorKind::Restir);
+        render.restir.indirect_reuse = IndirectReuse::Temporal;
+        const LayeredImage traced = play(frames, caches, render);
+        render.restir.indirect_suffix = IndirectSuffix::BiasedValidated;
+        const LayeredImage kept = play(frames, caches, render);
+        const Buffer2D<float>& a = traced.channels[0].data;
+        const Buffer2D<float>& b = kept.channels[0].data;
+        EXPECT_EQ(std::equal(a.begin(), a.end(), b.begin()), still);
+    }
 }
 
 TEST(PathReuse, NeedsAShutterDuringWhichOnlyTheCameraMoves)
