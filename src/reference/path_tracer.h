@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/rng.h"
+#include "reference/aimed_light.h"
 #include "reference/direct_light.h"
 #include "reference/light_sampler.h"
 #include "reference/scatter_event.h"
@@ -48,9 +49,10 @@ struct PathResult {
                                            Rng& rng);
 
 /// Radiance that arrives on a ray along which an event scattered light, `event_count` events behind
-/// it, that one included: together with estimate_direct_light at the event all light scattered
-/// there. `truncated` is set where max_bounces cut a path.
+/// it, that one included: together with estimate_direct_light at the event, and with what it has
+/// sought by `aim`, all light scattered there. `truncated` is set where max_bounces cut a path.
 [[nodiscard]] Spectrum trace_scattered_ray(const TraceContext& context, const LightRay& light_ray,
-                                           int event_count, Rng& rng, bool& truncated);
+                                           int event_count, const Aim& aim, Rng& rng,
+                                           bool& truncated);
 
 }  // namespace mote

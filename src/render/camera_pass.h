@@ -37,6 +37,7 @@ struct PassInputs {
     const LightSampler& lights;           ///< for paths of many events; empty if there are none
     const ScatterNodes* nodes = nullptr;  ///< for previews; null: none
     bool shares_paths = false;            ///< of many events: see shares_paths()
+    AimedLights aims{};                   ///< of paths of many events
     PixelSplits split{};                  ///< where pixels take several camera rays
 };
 

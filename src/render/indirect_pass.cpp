@@ -31,8 +31,8 @@ Spectrum medium_event(const Scene& scene, const PixelDomain& domain, float tau, 
 
 TraceContext context_with(const PassInputs& inputs, const CachedGuesses& guesses)
 {
-    return {*inputs.domain.scene, inputs.lights, inputs.render.path, &guesses.shadows,
-            guesses.guide()};
+    return {*inputs.domain.scene, inputs.lights,   inputs.render.path,
+            &guesses.shadows,     guesses.guide(), &inputs.aims};
 }
 
 /// How many of `count` paths a ray is worth on which a share `lost` of the light collides: in

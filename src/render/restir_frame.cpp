@@ -98,6 +98,7 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
                             lights,
                             nodes ? &*nodes : nullptr,
                             shares && history.caches->extinction,
+                            find_aimed_lights(scene),
                             find_split_pixels(scene, domain.params.edge_strata)};
     PassCounts counts;
     bool finished = false;
