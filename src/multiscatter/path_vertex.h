@@ -1,6 +1,6 @@
 #pragma once
 
-#include "reference/scatter_event.h"
+#include "reference/aimed_light.h"
 
 namespace mote {
 
@@ -13,8 +13,8 @@ struct IncidentSample {
 
 /// A vertex of paths that are shared.
 struct PathVertex {
-    /// A shadow ray's, that of the ray which goes on, and what is behind that.
-    static constexpr int most_arrivals = 3;
+    /// A shadow ray's, that of the ray which goes on, and what is behind that, or was sought.
+    static constexpr int most_arrivals = 2 + AimedLights::most;
 
     Vec3 x{0.0f};                  ///< world [m]
     const Phase* phase = nullptr;  ///< how it scatters; null on surfaces

@@ -228,13 +228,19 @@ void send_paths(const SharingContext& context, int event_count, bool is_first, P
 void follow_own_path(const SharingContext& context, const ScatterEvent& event, int event_count,
                      PathVertex& v, Rng& rng)
 {
+    const TraceContext& trace = context.trace;
+    const Aim aim = event_count < trace.params.max_bounces ? aim_at_lights(trace, event) : Aim{};
+    for (int i = 0; trace.aims && i < trace.aims->count; ++i) {
+        const AimedArrival arrival = seek_light(trace, event, aim, i, rng);
+        v.add({arrival.wi, arrival.E});
+    }
     const std::optional<ScatteredDirection> s = sample_scattering(event, rng);
     if (!s) return;
     const float pdf = s->scattering.pdf_dir;
     const LightRay light_ray{Ray{ray_origin(event, s->wi), s->wi, event.time}, pdf, false};
-    v.add(
-        {s->wi,
-         trace_scattered_ray(context.trace, light_ray, event_count, rng, context.truncated) / pdf});
+    const Spectrum arrives =
+        trace_scattered_ray(trace, light_ray, event_count, aim, rng, context.truncated);
+    v.add({s->wi, arrives / pdf});
 }
 
 }  // namespace mote

@@ -29,6 +29,7 @@ struct PathState {
     Spectrum beta{1.0f};
     int event_count = 0;
     bool first_is_surface = false;
+    Aim aim{};  ///< of the event that the ray has left
 };
 
 /// The ray on which light scattered at the event arrives; empty if nothing is scattered. What
@@ -51,6 +52,7 @@ void follow(const TraceContext& context, const PathState& start,
     Spectrum beta = start.beta;
     int event_count = start.event_count;
     bool first_is_surface = start.first_is_surface;
+    Aim aim = start.aim;
     const Scene& scene = context.scene;
     const PathTracerParams& params = context.params;
     FirstEvent first;
@@ -99,7 +101,10 @@ void follow(const TraceContext& context, const PathState& start,
             event.first = &first;
         }
         part_of(result, event_count + 1, first_is_surface) +=
-            beta * estimate_direct_light(context, event, rng);
+            beta * estimate_direct_light_after(context, event, aim, light_ray.pdf_dir, rng);
+        aim = event_count + 2 <= params.max_bounces ? aim_at_lights(context, event) : Aim{};
+        part_of(result, event_count + 2, first_is_surface) +=
+            beta * estimate_aimed_light(context, event, aim, rng);
 
         const std::optional<LightRay> scattered = scattered_ray(event, rng, beta);
         if (!scattered) return;
@@ -135,15 +140,19 @@ PathResult trace_after_event(const TraceContext& context, const ScatterEvent& fi
     Spectrum beta(1.0f);
     const std::optional<LightRay> scattered = scattered_ray(first, rng, beta);
     if (!scattered) return result;
-    follow(context, {*scattered, beta, 1, first.surface != nullptr}, std::nullopt, rng, result);
+    const Aim aim = context.params.max_bounces > 1 ? aim_at_lights(context, first) : Aim{};
+    result.indirect += estimate_aimed_light(context, first, aim, rng);
+    follow(context, {*scattered, beta, 1, first.surface != nullptr, aim}, std::nullopt, rng,
+           result);
     return result;
 }
 
 Spectrum trace_scattered_ray(const TraceContext& context, const LightRay& light_ray,
-                             int event_count, Rng& rng, bool& truncated)
+                             int event_count, const Aim& aim, Rng& rng, bool& truncated)
 {
     PathResult result;
-    follow(context, {light_ray, Spectrum(1.0f), event_count, false}, std::nullopt, rng, result);
+    follow(context, {light_ray, Spectrum(1.0f), event_count, false, aim}, std::nullopt, rng,
+           result);
     truncated |= result.truncated;
     return result.direct + result.indirect;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/rng.h"
+#include "reference/aimed_light.h"
 #include "reference/direct_light.h"
 #include "reference/light_sampler.h"
 #include "reference/scatter_event.h"
@@ -42,16 +43,17 @@ struct PathResult {
 
 /// What a path brings that is about to scatter for the first time at `first`: radiance scattered
 /// twice and more, seen at the event, in indirect or surface_indirect. A medium's albedo is left
-/// out. Of light scattered once there is what the scattered ray finds: by MIS with shadow rays, or all
-/// of it where those are not used, as for a constant environment alone. Precondition:
+/// out. Of light scattered once there is what the scattered ray finds: by MIS with shadow rays, or
+/// all of it where those are not used, as for a constant environment alone. Precondition:
 /// params.max_bounces > 1. For estimators that place the first event themselves.
 [[nodiscard]] PathResult trace_after_event(const TraceContext& context, const ScatterEvent& first,
                                            Rng& rng);
 
 /// Radiance that arrives on a ray along which an event scattered light, `event_count` events behind
-/// it, that one included: together with estimate_direct_light at the event all light scattered
-/// there. `truncated` is set where max_bounces cut a path.
+/// it, that one included: together with estimate_direct_light at the event, and with what it has
+/// sought by `aim`, all light scattered there. `truncated` is set where max_bounces cut a path.
 [[nodiscard]] Spectrum trace_scattered_ray(const TraceContext& context, const LightRay& light_ray,
-                                           int event_count, Rng& rng, bool& truncated);
+                                           int event_count, const Aim& aim, Rng& rng,
+                                           bool& truncated);
 
 }  // namespace mote

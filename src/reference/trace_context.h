@@ -7,6 +7,8 @@
 
 namespace mote {
 
+struct AimedLights;
+
 /// What every part of the path tracer needs to see.
 struct TraceContext {
     const Scene& scene;
@@ -14,6 +16,7 @@ struct TraceContext {
     const PathTracerParams& params;
     const ShadowGuess* shadows = nullptr;  ///< null: every shadow is asked for
     const LightGuide* guide = nullptr;     ///< null: lights are chosen by the sampler alone
+    const AimedLights* aims = nullptr;     ///< null: walks do not aim at lights
 };
 
 }  // namespace mote

@@ -34,8 +34,8 @@ Spectrum medium_event(const Scene& scene, const PixelDomain& domain, float tau, 
 
 TraceContext context_with(const PassInputs& inputs, const CachedGuesses& guesses)
 {
-    return {*inputs.domain.scene, inputs.lights, inputs.render.path, &guesses.shadows,
-            guesses.guide()};
+    return {*inputs.domain.scene, inputs.lights,   inputs.render.path,
+            &guesses.shadows,     guesses.guide(), &inputs.aims};
 }
 
 PathVertex first_vertex(const ScatterEvent& event, Spectrum weight, int owner)

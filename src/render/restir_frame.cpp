@@ -103,6 +103,7 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
                             shares && history.caches->extinction,
                             brings_sky,
                             plan.paths ? &path_light : nullptr,
+                            find_aimed_lights(scene),
                             find_split_pixels(scene, domain.params.edge_strata)};
     PassCounts counts;
     bool finished = false;

@@ -32,13 +32,16 @@ struct Sharing {
     PathTracerParams path;
     LightSampler lights;
     CoarseExtinction extinction;
+    AimedLights aims;
     std::vector<PathVertex> first;
 
     Sharing(Scene s, int max_bounces, float spread)
         : scene(std::move(s)),
           path{.max_bounces = max_bounces},
           lights(scene, path),
-          extinction(make_coarse_extinction(scene.media, find_smoke_cells(scene.media, 4.0f, 1000)))
+          extinction(
+              make_coarse_extinction(scene.media, find_smoke_cells(scene.media, 4.0f, 1000))),
+          aims(find_aimed_lights(scene))
     {
         for (uint32_t i = 0; i < 6; ++i) {
             Rng rng(11, 0, Stream::Test, i, 0);
@@ -69,7 +72,8 @@ struct Sharing {
         std::vector<Spectrum> light(1, Spectrum(0.0f));
         WalkCounts counts;
         bool truncated = false;
-        share_paths(trace(), extinction, sharing, first, rng, light, counts, truncated);
+        const TraceContext aiming{scene, lights, path, nullptr, nullptr, &aims};
+        share_paths(aiming, extinction, sharing, first, rng, light, counts, truncated);
         return light[0];
     }
 
