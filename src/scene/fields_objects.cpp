@@ -120,7 +120,8 @@ void describe(FieldVisitor& v, ObjectDescription& object)
         v,
         {.key = "file",
          .doc = "Mesh (.obj, .ply) or glTF file (.gltf, .glb), one or a sequence; text alone is "
-                "its `path`",
+                "its `path`. Vertices reach to 1e9 in the file and, once placed, to 1e7 m from the "
+                "origin",
          .required = true,
          .also = "mesh path obj ply gltf glb",
          .shorthand = "path"},

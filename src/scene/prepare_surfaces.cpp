@@ -6,6 +6,7 @@
 
 #include "particles/sequence.h"
 #include "scene/object_parts.h"
+#include "scene/object_reach.h"
 #include "scene/surface_lights.h"
 
 namespace mote {
@@ -47,7 +48,9 @@ std::vector<ObjectPart> make_parts(const std::vector<ShownObject>& shown,
 {
     std::vector<ObjectPart> parts;
     for (const ShownObject& s : shown) {
+        const size_t first = parts.size();
         is_gltf(s.path) ? add_gltf_parts(context, s, parts) : add_mesh_part(context, s, parts);
+        for (size_t i = first; i < parts.size(); ++i) require_in_reach(parts[i], s.path);
     }
     return parts;
 }

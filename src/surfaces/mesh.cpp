@@ -1,5 +1,7 @@
 #include "surfaces/mesh.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "core/error.h"
@@ -10,17 +12,41 @@ namespace {
 /// Embree numbers primitives in 32 bits, and so does everything here.
 constexpr size_t max_triangles = size_t{1} << 31;
 
-bool is_usable(const Mesh& mesh, size_t triangle, MeshRepairs& repairs)
+/// Rays that leave a triangle start the farther off, the thinner it is: much thinner than this
+/// share of its length, farther off than Embree can trace.
+constexpr double min_thickness = 1e-12;
+
+/// In floats, as lights have it, and in double, as points on it are found.
+bool has_area(const Mesh& mesh, size_t triangle)
+{
+    const Vec3 rounded = area_normal(mesh, triangle);
+    if (!(glm::dot(rounded, rounded) > 0.0f)) return false;
+    const glm::uvec3 t = mesh.triangles[triangle];
+    const Vec3d a(mesh.positions[t.x]);
+    const Vec3d e1 = Vec3d(mesh.positions[t.y]) - a;
+    const Vec3d e2 = Vec3d(mesh.positions[t.z]) - a;
+    const Vec3d size = glm::abs(e1) + glm::abs(e2);
+    const double extent = std::max({size.x, size.y, size.z});
+    return glm::length(glm::cross(e1, e2)) > min_thickness * extent * extent;
+}
+
+bool is_usable(const Mesh& mesh, size_t triangle, const std::string& file, MeshRepairs& repairs)
 {
     const glm::uvec3 t = mesh.triangles[triangle];
     for (int corner = 0; corner < 3; ++corner) {
-        if (is_finite(mesh.positions[t[corner]])) continue;
-        ++repairs.non_finite;
-        return false;
+        const Vec3 p = mesh.positions[t[corner]];
+        if (!is_finite(p)) {
+            ++repairs.non_finite;
+            return false;
+        }
+        if (max_component(glm::abs(p)) > max_file_coordinate) {
+            throw Error(ExitCode::Input,
+                        fmt::format("{}: vertex ({}, {}, {}) lies beyond {:g} m; scale the mesh "
+                                    "down or mend it where it was made",
+                                    file, p.x, p.y, p.z, max_file_coordinate));
+        }
     }
-    const Vec3 normal = area_normal(mesh, triangle);
-    const float area2 = glm::dot(normal, normal);
-    if (area2 > 0.0f && std::isfinite(area2)) return true;
+    if (has_area(mesh, triangle)) return true;
     ++repairs.degenerate;
     return false;
 }
@@ -63,7 +89,7 @@ MeshRepairs repair_mesh(Mesh& mesh, const std::string& file)
                         fmt::format("{}: triangle {} uses vertex {}, but there are only {}", file,
                                     i, last, mesh.positions.size()));
         }
-        if (is_usable(mesh, i, repairs)) mesh.triangles[kept++] = t;
+        if (is_usable(mesh, i, file, repairs)) mesh.triangles[kept++] = t;
     }
     mesh.triangles.resize(kept);
     if (mesh.normals.size() != mesh.positions.size()) mesh.normals.clear();

@@ -22,7 +22,7 @@ struct Mesh {
 /// What finish_mesh left out or mended.
 struct MeshRepairs {
     size_t non_finite = 0;   ///< triangles dropped: a vertex was no finite number
-    size_t degenerate = 0;   ///< triangles dropped: no area
+    size_t degenerate = 0;   ///< triangles dropped: no area, or 1e12 times as long as wide
     size_t bad_normals = 0;  ///< vertices shaded flat: their normal had no finite length
     size_t bad_uvs = 0;      ///< texture coordinates that were not finite, now 0
 };
@@ -31,10 +31,14 @@ struct MeshRepairs {
 /// three corners (lines, points) add nothing.
 void add_polygon(Mesh& mesh, std::span<const uint32_t> corners);
 
+/// Coordinates of vertices in their file reach this far [m]: Embree's products of them stay finite.
+/// In the world it is max_world_coordinate.
+inline constexpr float max_file_coordinate = 1e9f;
+
 /// Makes a mesh that was read safe to render: drops triangles without area or with vertices that
 /// are not finite, makes normals unit length (0 where they have no direction), texture coordinates
 /// finite, fills the bounds. `file` is for messages. Throws Error(Input) if an index is out of
-/// range or nothing is left.
+/// range, a triangle has a vertex beyond max_file_coordinate, or nothing is left.
 MeshRepairs finish_mesh(Mesh& mesh, const std::string& file);
 
 /// The same, but a mesh of which nothing is left is no error.

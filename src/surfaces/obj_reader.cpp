@@ -14,10 +14,14 @@ namespace mote {
 namespace {
 
 /// Feeds tinyobjloader line by line, so that the file's line number is that of the line at hand
-/// whenever it calls back. It reads what is no number as 0: such lines are refused here.
+/// whenever it calls back. It reads what is no number as 0, "nan" and "inf" included: lines of
+/// numbers are read here.
 class ObjLines : public std::streambuf {
   public:
     explicit ObjLines(InputFile& file) : file_(file) {}
+
+    /// Of the v, vn or vt at hand.
+    [[nodiscard]] const Vec3& numbers() const { return numbers_; }
 
   protected:
     int_type underflow() override
@@ -25,14 +29,14 @@ class ObjLines : public std::streambuf {
         std::string_view line;
         if (!file_.next_line(line)) return traits_type::eof();
         line_.assign(line);
-        check_numbers();
+        read_numbers();
         line_.push_back('\n');
         setg(line_.data(), line_.data(), line_.data() + line_.size());
         return traits_type::to_int_type(*gptr());
     }
 
   private:
-    void check_numbers() const
+    void read_numbers()
     {
         TextRow row(file_.path(), file_.line_number(), line_);
         std::string_view token;
@@ -42,12 +46,13 @@ class ObjLines : public std::streambuf {
             if (!row.next(token)) {
                 row.fail(count == 2 ? "two numbers are needed" : "three numbers are needed");
             }
-            (void)row.number(token);
+            numbers_[i] = static_cast<float>(row.number(token));
         }
     }
 
     InputFile& file_;
     std::string line_;
+    Vec3 numbers_{0.0f};
 };
 
 /// Position, normal and texture coordinates that one corner of a face names; -1: none.
@@ -57,6 +62,7 @@ using Corner = std::tuple<int64_t, int64_t, int64_t>;
 /// combination that occurs is a vertex.
 struct ObjBuild {
     const InputFile& file;
+    const ObjLines& lines;
     std::vector<Vec3> positions, normals;
     std::vector<Vec2> uvs;
     std::map<Corner, uint32_t> vertex_of;
@@ -112,16 +118,16 @@ Mesh read_obj(const std::string& path)
     std::istream stream(&lines);
     stream.exceptions(std::ios::badbit);  // hands on what ObjLines throws
 
-    ObjBuild build{file, {}, {}, {}, {}, {}, {}};
+    ObjBuild build{file, lines, {}, {}, {}, {}, {}, {}};
     tinyobj::callback_t on;
-    on.vertex_cb = [](void* user, float x, float y, float z, float) {
-        build_of(user).positions.emplace_back(x, y, z);
+    on.vertex_cb = [](void* user, float, float, float, float) {
+        build_of(user).positions.push_back(build_of(user).lines.numbers());
     };
-    on.normal_cb = [](void* user, float x, float y, float z) {
-        build_of(user).normals.emplace_back(x, y, z);
+    on.normal_cb = [](void* user, float, float, float) {
+        build_of(user).normals.push_back(build_of(user).lines.numbers());
     };
-    on.texcoord_cb = [](void* user, float u, float v, float) {
-        build_of(user).uvs.emplace_back(u, v);
+    on.texcoord_cb = [](void* user, float, float, float) {
+        build_of(user).uvs.emplace_back(build_of(user).lines.numbers());
     };
     on.index_cb = [](void* user, tinyobj::index_t* corners, int count) {
         build_of(user).add_face({corners, static_cast<size_t>(count)});

@@ -196,6 +196,27 @@ TEST(PrepareSurfaces, MissingPicturesAndCoordinatesAreNamed)
                  {"box.obj", "no texture coordinates"});
 }
 
+/// Beyond what floats and Embree can place; at any key, and one frame later.
+TEST(PrepareSurfaces, VerticesOutOfReachAreNamed)
+{
+    const std::string box = "[[objects]]\nname = \"moon\"\nfile = \"box.obj\"\n";
+    SceneCache cache;
+    PrepareStats stats;
+    const Folder far(box + "transform = { translate = [9999999.5, 0, 0] }\n");
+    expect_error([&] { (void)prepare(far.description, 1, cache, stats); }, ExitCode::Input,
+                 {"box.obj: vertex (1, ", "\"moon\"", "beyond 1e+07 m", "scale it down"});
+    const Folder near(box + "transform = { translate = [9999998.5, 0, 0] }\n");
+    EXPECT_TRUE(prepare(near.description, 1, cache, stats).surfaces);
+    const Folder moving(box +
+                        "transform = [{ frame = 1 }, { frame = 2, translate = [0, 1e7, 0] }]\n");
+    EXPECT_TRUE(prepare(moving.description, 0, cache, stats, true).surfaces);
+    expect_error([&] { (void)prepare(moving.description, 1, cache, stats, true); }, ExitCode::Input,
+                 {"box.obj: vertex", "beyond"});
+    const Folder shrunk("[[objects]]\nfile = \"star.obj\"\ntransform = { scale = 1e-3 }\n");
+    shrunk.folder.write("star.obj", "v 0 0 0\nv 1e9 0 0\nv 0 1e9 0\nf 1 2 3\n");
+    EXPECT_TRUE(prepare(shrunk.description, 1, cache, stats).surfaces) << "1e6 m in the world";
+}
+
 TEST(PrepareSurfaces, BrokenMeshesAreNamed)
 {
     const Folder f("[[objects]]\nfile = \"bad.obj\"\n");

@@ -3,22 +3,12 @@
 #include "core/rng.h"
 #include "core/sampling.h"
 #include "surfaces/meshes.h"
-#include "surfaces/surfaces.h"
+#include "surfaces/one_mesh.h"
 
 namespace mote {
 namespace {
 
-/// Surfaces of one instance.
-Surfaces make_surfaces(Mesh mesh, const Trs& trs)
-{
-    MeshInstance instance{std::make_shared<const MeshBvh>(std::move(mesh)), {}};
-    instance.world_from_object.keys = {trs};
-    Surfaces surfaces;
-    surfaces.objects = {{"thing", 0}};
-    surfaces.materials = {Material{}};
-    surfaces.bvh = std::make_shared<const InstanceBvh>(std::vector<MeshInstance>{instance});
-    return surfaces;
-}
+using test::make_surfaces;
 
 Trs placed(double scale, Vec3d translate, bool is_turned)
 {

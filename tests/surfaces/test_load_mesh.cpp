@@ -122,6 +122,34 @@ TEST(LoadMesh, TrianglesThatCannotBeDrawnAreLeftOut)
     EXPECT_EQ(counted.normals[1], Vec3(1.0f, 0.0f, 0.0f));
 }
 
+/// What OBJ's common readers take for 0.
+TEST(LoadMesh, TextThatIsNoFiniteNumberIsNotZero)
+{
+    const Mesh mesh = load("a.obj",
+                           "v 0 0 0\nv 1 0 0\nv 0 1 0\nv nan 0 0\nv 0 0 -inf\nvn nan nan nan\n"
+                           "vn 0 0 3\nvt inf 0.5\nf 1/1/1 2/1/2 3/1/2\nf 1 2 4\nf 1 2 5\n");
+    EXPECT_EQ(mesh.triangles.size(), 1u);
+    EXPECT_EQ(mesh.normals[0], Vec3(0.0f)) << "flat";
+    EXPECT_EQ(mesh.normals[1], Vec3(0.0f, 0.0f, 1.0f));
+    EXPECT_EQ(mesh.uvs[0], Vec2(0.0f));
+    const TemporaryFolder folder;
+    const Mesh raw = read_obj(folder.write("a.obj",
+                                           "v nan 0 0\nv 1 0 0\nv 0 1 0\nvn 0 nan 1\n"
+                                           "f 1//1 2//1 3//1\n"));
+    EXPECT_TRUE(std::isnan(raw.positions[0].x));
+    EXPECT_TRUE(std::isnan(raw.normals[0].y));
+}
+
+/// Longer than wide beyond what rays that leave it can be traced for.
+TEST(LoadMesh, TrianglesTooThinForRaysAreLeftOut)
+{
+    Mesh mesh;
+    mesh.positions = {Vec3(0.0f), Vec3(1e7f, 0.0f, 0.0f), Vec3(5e6f, 1e-15f, 0.0f),
+                      Vec3(5e6f, 1e-3f, 0.0f)};
+    mesh.triangles = {{0, 1, 2}, {0, 1, 3}};
+    EXPECT_EQ(finish_mesh(mesh, "here").degenerate, 1u);
+}
+
 TEST(LoadMesh, ErrorsNameFilePlaceAndReason)
 {
     const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
@@ -140,6 +168,8 @@ TEST(LoadMesh, ErrorsNameFilePlaceAndReason)
         {"a.obj", "vt 0\n", "a.obj:1:5: two numbers are needed"},
         {"a.obj", "v 0 0\n", "a.obj:1:6: three numbers are needed"},
         {"a.obj", corners + "f 1 1 2\n", "holds no triangle that can be drawn"},
+        {"a.obj", corners + "v 0 -1e13 2\nf 1 2 4\n",
+         "a.obj: vertex (0, -1e+13, 2) lies beyond 1e+09 m"},
         {"a.obj", "", "holds no triangle"},
         {"a.fbx", "", "export it as .obj, .ply, .gltf or .glb"},
         {"a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n0\n",

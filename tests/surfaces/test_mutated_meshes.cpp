@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
+#include "core/rng.h"
+#include "core/sampling.h"
 #include "core/sanitizers.h"
 #include "support/damage.h"
 #include "support/png_bytes.h"
@@ -11,9 +13,11 @@
 #include "surfaces/gltf_text.h"
 #include "surfaces/load_mesh.h"
 #include "surfaces/meshes.h"
+#include "surfaces/one_mesh.h"
 
 // Damaged files end in a mesh that is safe to render or in one Error that names the file; nothing
-// crashes, hangs or asks for memory out of proportion to the file.
+// crashes, hangs or asks for memory out of proportion to the file. Rays are traced through what
+// is left.
 namespace mote {
 namespace {
 
@@ -35,6 +39,35 @@ void expect_safe(const Mesh& mesh)
     ASSERT_TRUE(mesh.normals.empty() || mesh.normals.size() == mesh.positions.size());
     ASSERT_TRUE(mesh.uvs.empty() || mesh.uvs.size() == mesh.positions.size());
     for (const Vec2& uv : mesh.uvs) ASSERT_TRUE(std::isfinite(uv.x) && std::isfinite(uv.y));
+}
+
+/// Rays from around the mesh to its triangles, and on from where they meet it: Embree asserts that
+/// what it is asked is a ray.
+void trace_rays(Mesh mesh, uint32_t trial)
+{
+    if (mesh.triangles.empty()) return;
+    const Surfaces surfaces = test::make_surfaces(std::move(mesh), Trs{});
+    const Mesh& traced = surfaces.mesh(0);
+    const Vec3 centre = 0.5f * traced.bounds.lo + 0.5f * traced.bounds.hi;
+    const float radius = glm::length(traced.bounds.hi - traced.bounds.lo);
+    Rng rng(trial, 0, Stream::Test, 0, 0);
+    for (int i = 0; i < 16; ++i) {
+        const auto count = static_cast<float>(traced.triangles.size());
+        const auto index = static_cast<size_t>(rng.uniform() * count);
+        const glm::uvec3 t = traced.triangles[std::min(index, traced.triangles.size() - 1)];
+        const Vec3 aim =
+            (traced.positions[t.x] + traced.positions[t.y] + traced.positions[t.z]) / 3.0f;
+        const Vec3 from = centre + radius * sample_sphere(rng.uniform2());
+        if (!(glm::length(aim - from) > 0.0f)) continue;
+        const Ray ray{from, glm::normalize(aim - from), 0.0f};
+        const auto hit = intersect(surfaces, ray, {0.0f, infinity});
+        if (!hit) continue;
+        const SurfaceVertex vertex = make_vertex(surfaces, *hit, 0.0f);
+        ASSERT_TRUE(is_finite(vertex.p));
+        ASSERT_NEAR(glm::length(vertex.ns), 1.0f, 1e-4f);
+        const Vec3 d = sample_sphere(rng.uniform2());
+        (void)is_occluded(surfaces, {ray_origin(vertex, d), d, 0.0f}, {0.0f, infinity});
+    }
 }
 
 /// The meshes of a file, safe to render.
@@ -64,7 +97,10 @@ void read_damaged(const char* name, const std::string& whole)
     for (uint32_t trial = 0; trial < trials; ++trial) {
         const std::string path = folder.write(name, test::damage(whole, trial));
         try {
-            for (const Mesh& mesh : read_any(path)) expect_safe(mesh);
+            for (Mesh& mesh : read_any(path)) {
+                expect_safe(mesh);
+                trace_rays(std::move(mesh), trial);
+            }
         } catch (const Error& e) {
             ++refused;
             EXPECT_TRUE(std::string_view(e.what()).starts_with(path)) << e.what();
