@@ -123,7 +123,7 @@ void find_light(const PathWorld& world, ReusedPath& path, bool& truncated)
     if (path.form == PathForm::ToRay) {
         Rng rng = numbers_of(world, path.key, Stream::PathSuffix);
         const LightRay ray{Ray{path.x2, path.wi, path_time}, inv_4pi, false};
-        path.E = trace_scattered_ray(world.trace, ray, 2, rng, truncated);
+        path.E = trace_scattered_ray(world.trace, ray, 2, Aim{}, rng, truncated);
         return;
     }
     Rng rng = numbers_of(world, path.key, Stream::PathLight);
@@ -157,7 +157,7 @@ Spectrum light_of_second(const PathWorld& world, const SecondVertex& second, con
         const LightRay ray{Ray{ray_origin(event, s->wi), s->wi, path_time}, scattering.pdf_dir,
                            false};
         light += scattering.f / scattering.pdf_dir *
-                 trace_scattered_ray(world.trace, ray, 2, rng, truncated);
+                 trace_scattered_ray(world.trace, ray, 2, Aim{}, rng, truncated);
     }
     return albedo * light;
 }
