@@ -159,6 +159,11 @@ std::vector<std::string> gltf_files(const std::string& path)
     return files;
 }
 
+bool has_gltf_animations(const std::string& path)
+{
+    return outline_gltf(path, read_bytes(path)).has_animations;
+}
+
 GltfScene load_gltf(const std::string& path)
 {
     const std::string bytes = read_bytes(path);
