@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "surfaces/load_mesh.h"
 
 namespace mote {
 namespace {

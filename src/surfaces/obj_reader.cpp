@@ -9,6 +9,7 @@
 #include "particles/input_file.h"
 #include "particles/text_row.h"
 #include "surfaces/load_mesh.h"
+#include "surfaces/triangulate.h"
 
 namespace mote {
 namespace {
@@ -100,7 +101,7 @@ struct ObjBuild {
             }
             polygon.push_back(entry->second);
         }
-        add_polygon(mesh, polygon);
+        mote::add_face(mesh, polygon, file.path());
     }
 };
 
