@@ -127,7 +127,9 @@ void bind_check(CLI::App& app, CheckOptions& o)
 
 void bind_info(CLI::App& app, InfoOptions& o)
 {
-    app.add_option("file", o.file, "Scene, .vdb, particle file (.vdb .ply .csv .npy) or .exr")
+    app.add_option(
+           "file", o.file,
+           "Scene, .vdb, particle file (.vdb .ply .csv .npy), mesh (.obj .ply .gltf .glb) or .exr")
         ->required()
         ->type_name("FILE");
     app.add_option("--frame", o.frame, "Frame of a scene or of a file pattern")->type_name("N");

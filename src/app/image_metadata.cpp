@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "scene/estimator_text.h"
+
 namespace mote {
 
 namespace {
@@ -20,19 +22,6 @@ void set(LayeredImage& image, const std::string& name, T value)
         }
     }
     image.attributes.push_back({name, std::move(value)});
-}
-
-const char* estimator_name(EstimatorKind kind)
-{
-    switch (kind) {
-        case EstimatorKind::Path:
-            return "path, unbiased";
-        case EstimatorKind::Restir:
-            return "restir";
-        case EstimatorKind::March:
-            return "march, biased";
-    }
-    return "";
 }
 
 /// UTC in the form that OpenEXR's capDate has.
@@ -77,7 +66,7 @@ void add_metadata(LayeredImage& image, const SceneDescription& scene, int frame,
     set(image, "mote:frame", frame);
     // Text, because seeds use all 32 bits and OpenEXR's integers are signed.
     set(image, "mote:seed", std::to_string(scene.render.seed));
-    set(image, "mote:estimator", std::string(estimator_name(scene.render.estimator)));
+    set(image, "mote:estimator", estimator_text(scene.render));
     set(image, "mote:spp", scene.render.samples);
     set(image, "mote:bounces", scene.render.path.max_bounces);
     set(image, "framesPerSecond", frame_rate(scene.fps));

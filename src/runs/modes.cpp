@@ -1,11 +1,14 @@
 #include "runs/modes.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include <fmt/format.h>
 
 #include "core/error.h"
 #include "core/text.h"
+#include "scene/object_parts.h"
+#include "surfaces/gltf/gltf_outline.h"
 
 namespace mote {
 
@@ -31,10 +34,17 @@ BenchMode find_mode(const std::string& name)
                                              did_you_mean(name, known), fmt::join(known, ", ")));
 }
 
-/// Whether a .vdb or particle sequence has more than one file.
+/// Whether a sequence of grids or meshes has more than one file.
 bool is_sequence(const std::optional<SequenceParams>& file)
 {
     return file && file->pattern.find_first_of("#%$") != std::string::npos;
+}
+
+/// Whether keyframes of a glTF file may move what it shows.
+bool is_moved_by_file(const std::string& base_dir, const std::string& file)
+{
+    if (!is_gltf(file)) return false;
+    return has_gltf_animations((std::filesystem::path(base_dir) / file).string());
 }
 
 /// Turns the camera around the point it is focused on, about its own upright axis.
@@ -72,6 +82,12 @@ const char* mode_name(BenchMode mode)
 bool is_animated(const SceneDescription& scene)
 {
     if (scene.camera.keys.size() > 1 || !scene.particles.empty()) return true;
+    if (is_moved_by_file(scene.base_dir, scene.camera.file.path)) return true;
+    const bool objects_move = std::any_of(
+        scene.objects.begin(), scene.objects.end(), [&](const ObjectDescription& object) {
+            return object.transform.size() > 1 || is_sequence(object.file) ||
+                   is_moved_by_file(scene.base_dir, object.file.pattern);
+        });
     const bool volumes_move =
         std::any_of(scene.volumes.begin(), scene.volumes.end(), [](const VolumeDescription& v) {
             return v.transform.size() > 1 || is_sequence(v.file) ||
@@ -80,7 +96,7 @@ bool is_animated(const SceneDescription& scene)
     const bool lights_move =
         std::any_of(scene.lights.begin(), scene.lights.end(),
                     [](const LightDescription& light) { return light.transform.size() > 1; });
-    return volumes_move || lights_move;
+    return objects_move || volumes_move || lights_move;
 }
 
 std::vector<BenchMode> choose_modes(const std::string& list, const SceneDescription& scene)

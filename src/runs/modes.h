@@ -33,7 +33,8 @@ struct ModeInfo {
 [[nodiscard]] std::vector<BenchMode> choose_modes(const std::string& list,
                                                   const SceneDescription& scene);
 
-/// Whether camera, volumes, particles or lights may change from frame to frame.
+/// Whether camera, volumes, particles, lights or objects may change from frame to frame. Throws
+/// Error(Input) if a glTF file cannot be read.
 [[nodiscard]] bool is_animated(const SceneDescription& scene);
 
 /// Frames that a mode renders in one run, oldest first. The mean of the last ones is compared.

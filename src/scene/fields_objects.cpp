@@ -40,7 +40,7 @@ void visit_files(FieldVisitor& v, MaterialFiles& files)
     visit(v,
           {.key = "alpha_cutoff",
            .doc = "Where the alpha of `color_texture` is below, there is no surface; 0: everywhere "
-                  "is",
+                  "is. JPEG has no alpha",
            .range = between(0, 1),
            .also = "alpha opacity cutout mask"},
           files.alpha_cutoff);

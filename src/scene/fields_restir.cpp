@@ -154,7 +154,8 @@ void describe(FieldVisitor& v, SurfaceRestirParams& surface)
         v,
         {.key = "light_candidates",
          .doc = "Lamps tried per pixel and pass; fewer where the scene has few; one shadow ray for "
-                "the chosen one",
+                "the chosen one. 4 to 8 gave the least error per time in measurements, where the "
+                "literature has 32: cells of lamps propose well, and each costs an evaluation",
          .range = between(1, 256)},
         surface.light_candidates);
     visit(v,
@@ -197,11 +198,14 @@ void describe(FieldVisitor& v, SurfaceRestirParams& surface)
     visit_choice(
         v,
         {.key = "visibility",
-         .doc = "Shadows in reuse between surfaces: exact, two rays per reservoir; none, one ray "
-                "for the chosen sample, noisier; reused, one ray where a sample is drawn, kept "
-                "for good: biased, darker beside shadows and lit inside; weighted, one ray per "
-                "neighbour, averaged with what history had: biased in time, colours leak and "
-                "moving shadows lag"},
+         .doc =
+             "Shadows in reuse between surfaces: exact, two rays per reservoir (full rays, smoke "
+             "included, not coarse guesses: what is seen then needs no further ray, and weights "
+             "are right at the edges of shadows); none, one ray "
+             "for the chosen sample, noisier; reused, one ray where a sample is drawn, kept "
+             "for good: biased, darker beside shadows and lit inside; weighted, one ray per "
+             "neighbour, averaged with what history had: biased in time, colours leak and "
+             "moving shadows lag"},
         surface.visibility, surface_visibility_names);
 }
 

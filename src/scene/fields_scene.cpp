@@ -58,7 +58,7 @@ void describe(FieldVisitor& v, SceneDescription& scene)
                scene.materials);
     visit_list(v,
                {.key = "objects",
-                .doc = "Things with surfaces, for the path estimator",
+                .doc = "Things with surfaces: meshes and glTF files",
                 .also = "object mesh meshes"},
                scene.objects);
 }

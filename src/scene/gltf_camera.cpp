@@ -7,6 +7,7 @@
 #include "core/error.h"
 #include "core/text.h"
 #include "scene/matrix_motion.h"
+#include "scene/object_parts.h"
 
 namespace mote {
 namespace {
@@ -39,6 +40,10 @@ Camera make_gltf_camera(const SceneDescription& scene, GltfCache& cache, double 
     const CameraDescription& description = scene.camera;
     const std::string path =
         (std::filesystem::path(scene.base_dir) / description.file.path).string();
+    if (!is_gltf(path)) {
+        throw Error(ExitCode::Input, fmt::format("{}: the camera's file must be glTF (.gltf, .glb)",
+                                                 printable(path)));
+    }
     const LoadedGltf& file = cache.get(path);
     const int node = find_camera(file, description.file.name);
     const int index = file.scene.nodes[static_cast<size_t>(node)].camera;

@@ -98,11 +98,19 @@ SurfaceLook Placing::look() const
                                         : fmt::format("{} image {}", file.version, image);
         return context.cache.textures.get({picture.path, picture.bytes}, version, role);
     };
-    look.textures.color = get(material.color, TextureRole::Color);
-    look.textures.roughness = get(material.metallic_roughness, TextureRole::Data);
+    const auto named = [&](int image, TextureRole role) {
+        try {
+            return get(image, role);
+        } catch (const Error& error) {
+            throw Error(error.code(), fmt::format("{}: material \"{}\": {}", printable(file.path),
+                                                  printable(material.name), error.what()));
+        }
+    };
+    look.textures.color = named(material.color, TextureRole::Color);
+    look.textures.roughness = named(material.metallic_roughness, TextureRole::Data);
     look.textures.metallic = look.textures.roughness;
-    look.textures.normal = get(material.normal, TextureRole::Data);
-    look.textures.emission = get(material.emission, TextureRole::Color);
+    look.textures.normal = named(material.normal, TextureRole::Data);
+    look.textures.emission = named(material.emission, TextureRole::Color);
     return look;
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "core/error.h"
 #include "core/file_name.h"
@@ -26,6 +27,20 @@ const MaterialDescription& material_of(const SceneDescription& description,
     });
     MOTE_ASSERT(found != list.end());  // check_scene
     return *found;
+}
+
+/// Whether alpha is 1 at all texels.
+bool is_opaque(const Texture& texture)
+{
+    for (int y = 0; y < texture.height(); ++y) {
+        for (int x = 0; x < texture.width(); ++x) {
+            const Vec2 centre(
+                (static_cast<float>(x) + 0.5f) / static_cast<float>(texture.width()),
+                (static_cast<float>(y) + 0.5f) / static_cast<float>(texture.height()));
+            if (texture.at(centre).w < 0.999f) return false;  // but for rounding
+        }
+    }
+    return true;
 }
 
 /// The mesh of a file, from the cache if it is there.
@@ -56,13 +71,21 @@ MaterialTextures make_textures(const PartContext& context, const MaterialFiles& 
         return context.cache.textures.get({path, {}}, file_version(path), role);
     };
     MaterialTextures out;
+    const size_t held = context.cache.textures.size();
     out.color = get(files.color, TextureRole::Color);
+    const bool is_new = context.cache.textures.size() > held;
     out.roughness = get(files.roughness, TextureRole::Data);
     out.metallic = get(files.metallic, TextureRole::Data);
     out.normal = get(files.normal, TextureRole::Data);
     out.emission = get(files.emission, TextureRole::Color);
     out.normal_strength = files.normal_strength;
     out.alpha_cutoff = files.alpha_cutoff;
+    if (out.is_cut() && out.color && is_new && is_opaque(*out.color)) {
+        spdlog::warn(
+            "{}: has no alpha, so \"alpha_cutoff\" cuts nothing out of it; save it with "
+            "an alpha channel",
+            printable(files.color));
+    }
     return out;
 }
 

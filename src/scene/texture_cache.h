@@ -26,6 +26,7 @@ class TextureCache {
     /// Drops the textures that nobody uses any more.
     void drop_unused();
 
+    [[nodiscard]] size_t size() const { return held_.size(); }
     [[nodiscard]] size_t memory_bytes() const;
 
   private:

@@ -6,6 +6,10 @@
 
 namespace mote {
 
+/// Coordinates of vertices in their file reach this far [m]: Embree's products of them stay finite.
+/// In the world it is max_world_coordinate.
+inline constexpr float max_file_coordinate = 1e9f;
+
 /// One mesh file, told apart by its ending: Wavefront .obj (v, vt, vn, f; materials are the scene's
 /// business) or .ply (ascii and binary; x y z, optional nx ny nz and s t or u v, faces of any
 /// size). Finished, with what was left out told as a warning. Throws Error(Input) naming the file

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "surfaces/load_mesh.h"
 
 namespace mote {
 namespace {
@@ -40,10 +41,11 @@ bool is_usable(const Mesh& mesh, size_t triangle, const std::string& file, MeshR
             return false;
         }
         if (max_component(glm::abs(p)) > max_file_coordinate) {
-            throw Error(ExitCode::Input,
-                        fmt::format("{}: vertex ({}, {}, {}) lies beyond {:g} m; scale the mesh "
-                                    "down or mend it where it was made",
-                                    file, p.x, p.y, p.z, max_file_coordinate));
+            throw Error(
+                ExitCode::Input,
+                fmt::format("{}: vertex ({:g}, {:g}, {:g}) lies beyond {:g} m; scale the mesh "
+                            "down or mend it where it was made",
+                            file, p.x, p.y, p.z, max_file_coordinate));
         }
     }
     if (has_area(mesh, triangle)) return true;

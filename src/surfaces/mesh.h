@@ -27,13 +27,9 @@ struct MeshRepairs {
     size_t bad_uvs = 0;      ///< texture coordinates that were not finite, now 0
 };
 
-/// Adds a polygon as a fan of triangles around its first corner, exact for convex ones. Fewer than
-/// three corners (lines, points) add nothing.
+/// Adds a polygon as a fan of triangles around its first corner, exact for convex ones (of others:
+/// add_face). Fewer than three corners (lines, points) add nothing.
 void add_polygon(Mesh& mesh, std::span<const uint32_t> corners);
-
-/// Coordinates of vertices in their file reach this far [m]: Embree's products of them stay finite.
-/// In the world it is max_world_coordinate.
-inline constexpr float max_file_coordinate = 1e9f;
 
 /// Makes a mesh that was read safe to render: drops triangles without area or with vertices that
 /// are not finite, makes normals unit length (0 where they have no direction), texture coordinates

@@ -4,11 +4,14 @@
 #include <tuple>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 #include <tiny_obj_loader.h>
 
+#include "core/text.h"
 #include "particles/input_file.h"
 #include "particles/text_row.h"
 #include "surfaces/load_mesh.h"
+#include "surfaces/triangulate.h"
 
 namespace mote {
 namespace {
@@ -22,6 +25,8 @@ class ObjLines : public std::streambuf {
 
     /// Of the v, vn or vt at hand.
     [[nodiscard]] const Vec3& numbers() const { return numbers_; }
+    /// Whether lines so far say what faces are made of.
+    [[nodiscard]] bool names_materials() const { return names_materials_; }
 
   protected:
     int_type underflow() override
@@ -40,7 +45,9 @@ class ObjLines : public std::streambuf {
     {
         TextRow row(file_.path(), file_.line_number(), line_);
         std::string_view token;
-        if (!row.next(token) || (token != "v" && token != "vn" && token != "vt")) return;
+        if (!row.next(token)) return;
+        names_materials_ |= token == "usemtl";
+        if (token != "v" && token != "vn" && token != "vt") return;
         const int count = token == "vt" ? 2 : 3;
         for (int i = 0; i < count; ++i) {
             if (!row.next(token)) {
@@ -53,6 +60,7 @@ class ObjLines : public std::streambuf {
     InputFile& file_;
     std::string line_;
     Vec3 numbers_{0.0f};
+    bool names_materials_ = false;
 };
 
 /// Position, normal and texture coordinates that one corner of a face names; -1: none.
@@ -100,7 +108,7 @@ struct ObjBuild {
             }
             polygon.push_back(entry->second);
         }
-        add_polygon(mesh, polygon);
+        mote::add_face(mesh, polygon, file.path());
     }
 };
 
@@ -135,6 +143,12 @@ Mesh read_obj(const std::string& path)
     std::string error;
     if (!tinyobj::LoadObjWithCallback(stream, on, &build, nullptr, nullptr, &error)) {
         throw Error(ExitCode::Input, fmt::format("{}: {}", path, printable(error)));
+    }
+    if (lines.names_materials()) {
+        spdlog::warn(
+            "{}: its materials (mtllib, usemtl) are not read; set the object's material, or "
+            "export it as .glb",
+            printable(path));
     }
     if (build.normals.empty()) build.mesh.normals.clear();
     if (build.uvs.empty()) build.mesh.uvs.clear();

@@ -2,6 +2,7 @@
 
 #include "particles/ply_rows.h"
 #include "surfaces/load_mesh.h"
+#include "surfaces/triangulate.h"
 
 namespace mote {
 namespace {
@@ -74,10 +75,13 @@ struct Reader {
     InputFile& file;
     PlyFormat format;
     Mesh mesh;
+    std::vector<uint32_t> corners;  ///< of all polygons: files may have them before the vertices
+    std::vector<size_t> ends;       ///< of each, in corners
 
     [[nodiscard]] bool is_big_endian() const { return format == PlyFormat::BigEndian; }
     void read_vertices(const PlyElement& element);
     void read_faces(const PlyElement& element);
+    void add_faces();
 };
 
 void Reader::read_vertices(const PlyElement& element)
@@ -121,7 +125,6 @@ void Reader::read_vertices(const PlyElement& element)
 void Reader::read_faces(const PlyElement& element)
 {
     const size_t list = corner_list(file.path(), element);
-    std::vector<uint32_t> corners;
     const auto add = [&](double index) {
         if (!(index >= 0.0 && index < 4294967295.0)) {
             throw Error(ExitCode::Input,
@@ -131,19 +134,17 @@ void Reader::read_faces(const PlyElement& element)
     };
     if (format == PlyFormat::Ascii) {
         for_each_ply_line(file, element, [&](uint64_t, TextRow& line) {
-            corners.clear();
             walk_ply_line(
                 line, element, [](size_t, double) {},
                 [&](size_t property, double index) {
                     if (property == list) add(index);
                 });
-            add_polygon(mesh, corners);
+            ends.push_back(corners.size());
         });
         return;
     }
     const ScalarType type = element.properties[list].type;
     for (uint64_t i = 0; i < element.count; ++i) {
-        corners.clear();
         walk_ply_row(
             file, element, is_big_endian(), [](size_t, const unsigned char*) {},
             [&](size_t property, uint64_t entries) {
@@ -156,7 +157,16 @@ void Reader::read_faces(const PlyElement& element)
                     add(load_scalar(file.take(size), type, is_big_endian()));
                 }
             });
-        add_polygon(mesh, corners);
+        ends.push_back(corners.size());
+    }
+}
+
+void Reader::add_faces()
+{
+    size_t begin = 0;
+    for (const size_t end : ends) {
+        add_face(mesh, std::span(corners).subspan(begin, end - begin), file.path());
+        begin = end;
     }
 }
 
@@ -166,7 +176,7 @@ Mesh read_ply_mesh(const std::string& path)
 {
     InputFile file(path);
     const PlyHeader header = read_ply_header(file);
-    Reader reader{file, header.format, {}};
+    Reader reader{file, header.format, {}, {}, {}};
     for (const PlyElement& element : header.elements) {
         check_ply_claim(file, element, header.format);
         if (element.name == "vertex") {
@@ -177,6 +187,7 @@ Mesh read_ply_mesh(const std::string& path)
             skip_ply_element(file, element, header.format);
         }
     }
+    reader.add_faces();
     return std::move(reader.mesh);
 }
 

@@ -4,6 +4,7 @@
 #include "runs/modes.h"
 #include "runs/pilot.h"
 #include "support/expect_error.h"
+#include "support/scene_files.h"
 
 namespace mote {
 
@@ -154,6 +155,28 @@ TEST(Modes, FollowWhatMoves)
     scene.volumes.front().procedural->evolve = 1.0f;
     EXPECT_TRUE(is_animated(scene));
     EXPECT_EQ(choose_modes("", scene), Modes{BenchMode::Moving});
+}
+
+/// What can move in a scene of surfaces: keyframes, files of several frames, keyframes in files.
+TEST(Modes, FollowWhatMovesOfObjects)
+{
+    const TemporaryFolder folder;
+    const std::string asset = R"({"asset": {"version": "2.0"})";
+    folder.write("still.gltf", asset + R"(, "animations": []})");
+    folder.write("moving.gltf", asset + R"(, "animations": [{"channels": [], "samplers": []}]})");
+    const auto moves = [&](const std::string& text) {
+        return is_animated(load_scene(folder.write("scene.toml", text)));
+    };
+    const auto object = [](const std::string& keys) { return "[[objects]]\n" + keys + "\n"; };
+    EXPECT_FALSE(moves(object("file = \"a.obj\"\ntransform = { translate = [1, 0, 0] }")));
+    EXPECT_TRUE(
+        moves(object("file = \"a.obj\"\ntransform = [{ frame = 1 }, { frame = 2, "
+                     "translate = [1, 0, 0] }]")));
+    EXPECT_TRUE(moves(object("file = \"a.####.obj\"")));
+    EXPECT_FALSE(moves(object("file = \"still.gltf\"")));
+    EXPECT_TRUE(moves(object("file = \"moving.gltf\"")));
+    EXPECT_FALSE(moves("[camera]\nfile = \"still.gltf\"\n"));
+    EXPECT_TRUE(moves("[camera]\nfile = \"moving.gltf\"\n"));
 }
 
 TEST(Modes, AllShowTheSameFrameLast)

@@ -232,7 +232,8 @@ TEST(PrepareGltf, MissingPicturesAreNamed)
     test::GltfText text = yard();
     text.json["images"] = {{{"uri", "skin.png"}}};
     Folder f(text, yard_scene);
-    expect_error([&] { (void)f.prepare(1); }, ExitCode::Input, {"skin.png", "cannot be read"});
+    expect_error([&] { (void)f.prepare(1); }, ExitCode::Input,
+                 {"yard.glb: material \"green\": ", "skin.png"});
     text.json["images"] = {{{"uri", "skin.webp"}}};
     Folder webp(text, yard_scene);
     webp.folder.write("skin.webp", "no picture");
@@ -242,6 +243,14 @@ TEST(PrepareGltf, MissingPicturesAreNamed)
     Folder jpeg(text, yard_scene);
     jpeg.folder.write("skin.jpg", test::text_of(test::rgb_jpeg));
     (void)jpeg.prepare(1);
+}
+
+TEST(PrepareGltf, CamerasOfOtherFilesAreRefused)
+{
+    Folder f(yard(), "[camera]\nfile = \"yard.obj\"\n");
+    f.folder.write("yard.obj", "v 0 0 0\n");
+    expect_error([&] { (void)f.prepare(1); }, ExitCode::Input,
+                 {"yard.obj: the camera's file must be glTF (.gltf, .glb)"});
 }
 
 }  // namespace

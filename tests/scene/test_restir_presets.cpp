@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "scene/estimator_text.h"
 #include "support/scene_files.h"
 
 namespace mote {
@@ -115,6 +116,30 @@ TEST(RestirPresets, KeysGivenBesidesWin)
     expect_same(
         preset("default", more, {"render.restir.mis=balance", "render.restir.preset=textbook"}),
         expected);
+}
+
+/// What images say of themselves.
+TEST(RestirPresets, EstimatorTextsTellReuseAndWhyImagesAreBiased)
+{
+    const auto text_of = [](const std::string& preset, const std::string& more = "") {
+        return estimator_text(test::load_text("[render]\nestimator = \"restir\"\n[render.restir]\n"
+                                              "preset = \"" +
+                                              preset + "\"\n" + more)
+                                  .render);
+    };
+    EXPECT_EQ(estimator_text({}), "path, unbiased");
+    EXPECT_EQ(text_of("default"), "restir, reuse auto, unbiased");
+    EXPECT_EQ(text_of("textbook"), "restir, reuse both, unbiased");
+    EXPECT_EQ(text_of("default", "reuse = \"temporal\"\n"), "restir, reuse temporal, unbiased");
+    EXPECT_EQ(text_of("preview"), "restir, reuse auto, biased: corrections = false");
+    EXPECT_EQ(text_of("biased-no-visibility"), "restir, reuse both, biased: visibility = none");
+    EXPECT_EQ(text_of("biased-constant-mis"),
+              "restir, reuse both, biased: mis = constant, surface.mis = constant");
+    EXPECT_EQ(text_of("biased-reused-visibility"),
+              "restir, reuse both, biased: surface.visibility = reused");
+    EXPECT_EQ(text_of("biased-weighted-visibility"),
+              "restir, reuse both, biased: surface.visibility = weighted");
+    EXPECT_EQ(text_of("biased-constant-mis", "reuse = \"off\"\n"), "restir, reuse off, unbiased");
 }
 
 TEST(RestirPresets, UnknownOnesAreNamedWithThoseThereAre)

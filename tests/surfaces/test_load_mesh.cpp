@@ -4,6 +4,7 @@
 #include "support/temporary_folder.h"
 #include "surfaces/load_mesh.h"
 #include "surfaces/meshes.h"
+#include "surfaces/triangulate.h"
 
 namespace mote {
 namespace {
@@ -122,6 +123,87 @@ TEST(LoadMesh, TrianglesThatCannotBeDrawnAreLeftOut)
     EXPECT_EQ(counted.normals[1], Vec3(1.0f, 0.0f, 0.0f));
 }
 
+/// All triangles run counterclockwise, seen from +z, and together have the polygon's area: they are
+/// its inside, each point once.
+void expect_inside(const Mesh& mesh, const std::vector<Vec2>& polygon, const char* what)
+{
+    double area = 0.0;
+    for (size_t i = 0; i < polygon.size(); ++i) {
+        const glm::dvec2 a(polygon[i]);
+        const glm::dvec2 b(polygon[(i + 1) % polygon.size()]);
+        area += 0.5 * (a.x * b.y - a.y * b.x);
+    }
+    double sum = 0.0;
+    for (size_t i = 0; i < mesh.triangles.size(); ++i) {
+        const float twice = area_normal(mesh, i).z;
+        EXPECT_GE(twice, 0.0f) << what;
+        sum += 0.5 * static_cast<double>(twice);
+    }
+    EXPECT_NEAR(sum, area, 1e-5 * area) << what;  // float vertices, some 100 triangles
+    EXPECT_EQ(mesh.triangles.size(), polygon.size() - 2) << what;
+}
+
+TEST(LoadMesh, PolygonsThatAreNotConvexKeepTheirShape)
+{
+    const std::vector<Vec2> arrow = {{0, 0}, {4, 0}, {1, 1}, {0, 4}};
+    const std::vector<Vec2> comb = {{0, 0}, {7, 0}, {7, 3}, {6, 1}, {5, 3},
+                                    {4, 1}, {3, 3}, {2, 1}, {1, 3}, {0, 1}};
+    // A square with a square hole, along an edge that runs there and back.
+    const std::vector<Vec2> hole = {{0, 0}, {6, 0}, {6, 6}, {0, 6}, {0, 0},
+                                    {2, 2}, {2, 4}, {4, 4}, {4, 2}, {2, 2}};
+    std::vector<Vec2> spiral;
+    for (const float inset : {0.0f, 0.4f}) {
+        for (int i = 0; i <= 60; ++i) {
+            const float turn = 0.3f * static_cast<float>(inset > 0.0f ? 60 - i : i);
+            spiral.push_back((1.0f + turn - inset) * Vec2(std::cos(turn), std::sin(turn)));
+        }
+    }
+    for (auto polygon : {arrow, comb, hole, spiral}) {
+        for (size_t first = 0; first < polygon.size(); ++first) {
+            std::rotate(polygon.begin(), polygon.begin() + 1, polygon.end());
+            Mesh mesh;
+            std::vector<uint32_t> corners;
+            for (const Vec2& p : polygon) {
+                corners.push_back(static_cast<uint32_t>(mesh.positions.size()));
+                mesh.positions.emplace_back(p, 0.5f * p.x);  // slanted
+            }
+            add_face(mesh, corners, "here");
+            expect_inside(mesh, polygon, "turned");
+        }
+    }
+    const Mesh obj = load("a.obj", "v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\nf 1 2 3 4\n");
+    expect_inside(obj, arrow, "OBJ");
+    const Mesh back = load("a.obj", "v 0 0 0\nv 4 0 0\nv 1 1 0\nv 0 4 0\nf 4 3 2 1\n");
+    EXPECT_EQ(area_of(back), area_of(obj));
+    EXPECT_LT(area_normal(back, 0).z, 0.0f);
+    const Mesh ply = load("a.ply",
+                          "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int "
+                          "vertex_indices\nelement vertex 4\nproperty float x\nproperty float y\n"
+                          "property float z\nend_header\n4 0 1 2 3\n0 0 0\n4 0 0\n1 1 0\n0 4 0\n");
+    expect_inside(ply, arrow, "PLY, faces first");
+}
+
+/// The fan of former versions stays for what it is right for; larger shapes have a limit.
+TEST(LoadMesh, ConvexPolygonsAreFansAndConcaveOnesHaveALimit)
+{
+    Mesh disk;
+    std::vector<uint32_t> corners;
+    const uint32_t count = static_cast<uint32_t>(max_concave_corners) + 2;
+    for (uint32_t i = 0; i < count; ++i) {
+        const double angle = 2.0 * 3.14159265358979 * i / count;
+        disk.positions.emplace_back(1e6 * std::cos(angle), 1e6 * std::sin(angle), 0.0);
+        corners.push_back(i);
+    }
+    disk.positions.back() = Vec3(0.0f);
+    const std::vector<uint32_t> few = {0, 1000, 3000, 6000};
+    add_face(disk, few, "here");
+    ASSERT_EQ(disk.triangles.size(), 2u);
+    EXPECT_EQ(disk.triangles[0], glm::uvec3(0u, 1000u, 3000u));
+    EXPECT_EQ(disk.triangles[1], glm::uvec3(0u, 3000u, 6000u));
+    expect_error([&] { add_face(disk, corners, "here"); }, ExitCode::Input,
+                 {"here: a face of 10002 corners is not convex", "triangulate it"});
+}
+
 /// What OBJ's common readers take for 0.
 TEST(LoadMesh, TextThatIsNoFiniteNumberIsNotZero)
 {
@@ -146,7 +228,8 @@ TEST(LoadMesh, TrianglesTooThinForRaysAreLeftOut)
     Mesh mesh;
     mesh.positions = {Vec3(0.0f), Vec3(1e7f, 0.0f, 0.0f), Vec3(5e6f, 1e-15f, 0.0f),
                       Vec3(5e6f, 1e-3f, 0.0f)};
-    mesh.triangles = {{0, 1, 2}, {0, 1, 3}};
+    mesh.triangles.emplace_back(0u, 1u, 2u);
+    mesh.triangles.emplace_back(0u, 1u, 3u);
     EXPECT_EQ(finish_mesh(mesh, "here").degenerate, 1u);
 }
 

@@ -23,6 +23,12 @@ void convert_materials(const GltfSource& source, GltfScene& out, std::vector<Glt
 /// Nodes of the default scene, with meshes and cameras. Throws Error(Input) for cycles.
 void convert_nodes(const GltfSource& source, const std::vector<GltfUvChoice>& uvs, GltfScene& out);
 
+/// What of a file is not shown, in words: vertex colours, samplers, extensions.
+[[nodiscard]] std::vector<std::string> left_out(const tinygltf::Model& model);
+
+/// Warns of it, once.
+void warn_of_left_out(const GltfSource& source);
+
 /// Keyframes of every animation; of two that move the same property the first one counts.
 /// `node_of` has the number in `out` of each of the file's nodes, -1: not in the scene.
 void convert_animations(const GltfSource& source, const std::vector<int>& node_of, GltfScene& out);

@@ -87,8 +87,8 @@ struct Converter {
         }
         has_uv = true;
         if (texture.source < 0) {
-            source.fail(
-                fmt::format("texture {} has no picture that mote reads; only PNG is", info.index));
+            source.fail(fmt::format(
+                "texture {} has no picture that mote reads; save it as PNG or JPEG", info.index));
         }
         (void)source.at(source.model.images, texture.source, "image");
         return texture.source;

@@ -32,6 +32,8 @@ struct Walker : Json::json_sax_t {
     int depth_of_needed = -1;
     bool is_too_deep = false;
     std::vector<std::string> uris, needed;
+    std::string version;
+    bool has_animations = false;
     size_t error_position = 0;
     bool has_error = false;
 
@@ -56,10 +58,15 @@ struct Walker : Json::json_sax_t {
     {
         const bool names_files = section == "buffers" || section == "images";
         if (names_files && depth == 3 && key_at_hand == "uri") uris.push_back(value);
+        if (section == "asset" && depth == 2 && key_at_hand == "version") version = value;
         if (depth_of_needed >= 0) needed.push_back(value);
         return true;
     }
-    bool start_object(std::size_t) override { return open(); }
+    bool start_object(std::size_t) override
+    {
+        has_animations |= section == "animations" && depth == 2;
+        return open();
+    }
     bool end_object() override { return close(); }
     bool start_array(std::size_t) override
     {
@@ -171,6 +178,8 @@ GltfOutline outline_gltf(const std::string& path, std::string_view bytes)
                                                  printable(path, 1000), line, column + 1));
     }
     outline.needed = std::move(walker.needed);
+    outline.version = std::move(walker.version);
+    outline.has_animations = walker.has_animations;
     const fs::path folder = fs::path(path).parent_path();
     for (const std::string& encoded : walker.uris) {
         if (encoded.starts_with("data:")) continue;

@@ -42,30 +42,26 @@ std::string read_bytes(const std::string& path)
 }
 
 /// Extensions that may be required: those that are shown, and those without which a picture is
-/// merely plainer.
+/// merely plainer. Lamps and surfaces that ignore light are not among them.
 constexpr std::array known_extensions = {
-    "KHR_materials_emissive_strength",
-    "KHR_materials_transmission",
-    "KHR_materials_ior",
-    "KHR_texture_transform",
-    "KHR_mesh_quantization",
-    "KHR_materials_specular",
-    "KHR_materials_clearcoat",
-    "KHR_materials_sheen",
-    "KHR_materials_volume",
-    "KHR_materials_unlit",
-    "KHR_lights_punctual",
+    "KHR_materials_emissive_strength", "KHR_materials_transmission", "KHR_materials_ior",
+    "KHR_texture_transform",           "KHR_mesh_quantization",      "KHR_materials_specular",
+    "KHR_materials_clearcoat",         "KHR_materials_sheen",        "KHR_materials_volume",
 };
 
-void check_extensions(const std::string& path, const GltfOutline& outline)
+void check_version_and_extensions(const std::string& path, const GltfOutline& outline)
 {
     for (const std::string& name : outline.needed) {
         const bool is_known = std::find(known_extensions.begin(), known_extensions.end(), name) !=
                               known_extensions.end();
         if (is_known) continue;
-        fail(path, fmt::format("it needs the extension {}, which mote does not know; export it "
+        fail(path, fmt::format("it needs the extension {}, which mote does not show; export it "
                                "without",
                                printable(name, 80)));
+    }
+    if (!outline.version.empty() && !outline.version.starts_with("2.")) {
+        fail(path, fmt::format("glTF version {}, mote reads 2; export it again",
+                               printable(outline.version, 40)));
     }
 }
 
@@ -159,11 +155,16 @@ std::vector<std::string> gltf_files(const std::string& path)
     return files;
 }
 
+bool has_gltf_animations(const std::string& path)
+{
+    return outline_gltf(path, read_bytes(path)).has_animations;
+}
+
 GltfScene load_gltf(const std::string& path)
 {
     const std::string bytes = read_bytes(path);
     const GltfOutline outline = outline_gltf(path, bytes);
-    check_extensions(path, outline);
+    check_version_and_extensions(path, outline);
     const ChildLimits limits = limits_for(bytes, outline);
     run_in_child(path, limits, [&] { (void)parse(path, bytes, outline); });
     tinygltf::Model model;
@@ -178,6 +179,7 @@ GltfScene load_gltf(const std::string& path)
     const GltfSource source{path, model};
     GltfScene scene;
     std::vector<GltfUvChoice> uvs;
+    warn_of_left_out(source);
     convert_materials(source, scene, uvs);
     convert_nodes(source, uvs, scene);
     return scene;
