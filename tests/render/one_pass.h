@@ -19,10 +19,10 @@ struct Pass {
           render(),
           domain(make_frame_domain({std::shared_ptr<const Scene>(), &scene},
                                    make_light_caches(scene, {100}, nullptr), render.restir)),
-          inputs{domain,  render, {},    lights,
-                 nullptr, false,  false, find_split_pixels(scene, strata)}
+          inputs{domain, render, {}, lights}
     {
         render.seed = seed;
+        inputs.split = find_split_pixels(scene, strata);
     }
 
     [[nodiscard]] SeenLook look(const Ray& ray) const { return look_along(*scene.surfaces, ray); }
