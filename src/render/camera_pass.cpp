@@ -119,6 +119,7 @@ void PassCounts::add(const PassCounts& other)
     bins.bins += other.bins.bins;
     light_rays.add(other.light_rays);
     guesses.add(other.guesses);
+    lamps.add(other.lamps);
     reuse.histories += other.reuse.histories;
     reuse.neighbours += other.reuse.neighbours;
     candidates += other.candidates;

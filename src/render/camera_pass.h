@@ -56,6 +56,7 @@ struct PassCounts {
     BinCounts bins;
     WalkCounts light_rays;
     WalkCounts guesses;  ///< rays towards lights through coarse media
+    WalkCounts lamps;    ///< camera rays to lamps in view
     ReuseCounts reuse;
     int64_t candidates = 0;          ///< in media and on surfaces
     int64_t surfaces = 0;            ///< passes that sampled a surface's light

@@ -68,7 +68,7 @@ void shade_parts(const PassInputs& inputs, const PassKey& key, PartScratch& scra
         sample.direct += value;
         sample.exact_rays += 1.0f;
     });
-    add_seen_lamps(*frame.scene, scratch.lamp_rays, counts.light_rays,
+    add_seen_lamps(*frame.scene, scratch.lamp_rays, counts.lamps,
                    [&](int of) -> FilmSample& { return scratch.samples[static_cast<size_t>(of)]; });
     scratch.surface_rays.trace(*frame.scene, counts.light_rays);
     for (size_t i = 0; i < scratch.surface_rays.size(); ++i) {

@@ -126,15 +126,17 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
     if (!plan.paths) history.paths = {};
     history.last = keeps_history ? domain : FrameDomain{};
     stats.truncated_paths = counts.truncated;
-    stats.camera_rays = counts.bins.rays;
+    stats.camera_rays = counts.bins.rays + static_cast<int64_t>(counts.lamps.rays);
     stats.missed_rays = counts.bins.misses;
     stats.light_rays = static_cast<int64_t>(counts.light_rays.rays);
-    stats.cells = counts.bins.cells + static_cast<int64_t>(counts.light_rays.cells);
+    stats.cells =
+        counts.bins.cells + static_cast<int64_t>(counts.light_rays.cells + counts.lamps.cells);
     stats.light_ray_cells = static_cast<int64_t>(counts.light_rays.cells);
     stats.coarse_rays = static_cast<int64_t>(counts.guesses.rays);
     stats.coarse_ray_cells = static_cast<int64_t>(counts.guesses.cells);
     stats.uniform_bricks =
-        counts.bins.uniform_bricks + static_cast<int64_t>(counts.light_rays.uniform_bricks);
+        counts.bins.uniform_bricks +
+        static_cast<int64_t>(counts.light_rays.uniform_bricks + counts.lamps.uniform_bricks);
     stats.candidates = counts.candidates;
     stats.surfaces = counts.surfaces;
     stats.emission_integrals = counts.emission_integrals;

@@ -188,7 +188,7 @@ void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, const DomainSto
         sample.direct += value;
         sample.exact_rays += 1.0f;
     });
-    add_seen_lamps(*frame.scene, lamp_rays, n.light_rays,
+    add_seen_lamps(*frame.scene, lamp_rays, n.lamps,
                    [&](int of) -> FilmSample& { return *samples[static_cast<size_t>(of)]; });
     shadows.trace(*frame.scene, n.light_rays);
     for (size_t i = 0; i < shadows.size(); ++i) {
