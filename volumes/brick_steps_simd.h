@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volumes/walk_kernels.h"
+#include "volumes/table_axis_simd.h"
 
 // BrickWalk for any number of lanes; see cell_steps_simd.h for how it is instantiated.
 
@@ -8,39 +8,22 @@ namespace mote {
 
 /// One axis of the walk from brick to brick.
 template <class Lanes>
-struct BrickAxis {
+struct BrickAxis : TableAxis<Lanes> {
+    using Base = TableAxis<Lanes>;
     using Real = typename Lanes::Real;
     using Mask = typename Lanes::Mask;
+    using Base::d, Base::last, Base::o, Base::sign;
 
-    Real o, d, inv;
-    Real sign;   // of the direction, -1 for 0
-    Real first;  // 0 upwards, 1 downwards: the low border of `reach` positions counts from there
-    Real last;   // position of the table
-    Mask moves;
     Real c;  // this position
 
     BrickAxis(const RayBlock& rays, int axis, size_t i, int32_t count)
-        : o(Lanes::load(rays.o[axis] + i)),
-          d(Lanes::load(rays.d[axis] + i)),
-          inv(Lanes::load(rays.inv[axis] + i)),
+        : Base(rays.o[axis] + i, rays.d[axis] + i, rays.inv[axis] + i, count),
           c(Lanes::load(rays.cell[axis] + i))
     {
-        const Real zero = Lanes::all(0.0f);
-        const Real one = Lanes::all(1.0f);
-        const Mask is_up = Lanes::less(zero, d);
-        sign = Lanes::select(is_up, one, Lanes::all(-1.0f));
-        first = Lanes::select(is_up, zero, one);
-        last = Lanes::all(static_cast<float>(count - 1));
-        moves = Lanes::less(zero, Lanes::mul(inv, sign));
     }
 
     /// s at which the ray leaves the cube of positions less than `reach` away.
-    [[nodiscard]] Real border(Real reach) const
-    {
-        const Real plane = Lanes::fma(sign, reach, Lanes::add(c, first));
-        const Real s = Lanes::mul(Lanes::sub(Lanes::mul(plane, Lanes::all(8.0f)), o), inv);
-        return Lanes::select(moves, s, Lanes::all(1e38f));
-    }
+    [[nodiscard]] Real border(Real reach) const { return Base::border(c, reach); }
 
     /// Position in this brick [voxels]; rounding may not leave it.
     [[nodiscard]] Real in_brick(Real s) const

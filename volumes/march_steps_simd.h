@@ -1,6 +1,6 @@
 #pragma once
 
-#include "volumes/walk_kernels.h"
+#include "volumes/table_axis_simd.h"
 
 // Rays marched side by side; see cell_steps_simd.h for how it is instantiated, and for
 // interpolate().
@@ -9,28 +9,14 @@ namespace mote {
 
 /// One axis of a march.
 template <class Lanes>
-struct MarchAxis {
+struct MarchAxis : TableAxis<Lanes> {
+    using Base = TableAxis<Lanes>;
     using Real = typename Lanes::Real;
-    using Mask = typename Lanes::Mask;
-
-    Real o, d, inv;
-    Real sign;   // of the direction, -1 for 0
-    Real first;  // 0 upwards, 1 downwards: the low border of `reach` positions counts from there
-    Real last;   // position of the table
-    Mask moves;
+    using Base::d, Base::last, Base::o;
 
     MarchAxis(const MarchBlock& rays, int axis, size_t i, int32_t count)
-        : o(Lanes::load(rays.o[axis] + i)),
-          d(Lanes::load(rays.d[axis] + i)),
-          inv(Lanes::load(rays.inv[axis] + i))
+        : Base(rays.o[axis] + i, rays.d[axis] + i, rays.inv[axis] + i, count)
     {
-        const Real zero = Lanes::all(0.0f);
-        const Real one = Lanes::all(1.0f);
-        const Mask is_up = Lanes::less(zero, d);
-        sign = Lanes::select(is_up, one, Lanes::all(-1.0f));
-        first = Lanes::select(is_up, zero, one);
-        last = Lanes::all(static_cast<float>(count - 1));
-        moves = Lanes::less(zero, Lanes::mul(inv, sign));
     }
 
     [[nodiscard]] Real at(Real s) const { return Lanes::fma(s, d, o); }
@@ -47,14 +33,6 @@ struct MarchAxis {
     {
         return Lanes::truncate(
             Lanes::max(Lanes::min(in_brick, Lanes::all(7.0f)), Lanes::all(0.0f)));
-    }
-
-    /// s at which the ray leaves the cube of positions less than `reach` away from brick b.
-    [[nodiscard]] Real border(Real b, Real reach) const
-    {
-        const Real plane = Lanes::fma(sign, reach, Lanes::add(b, first));
-        const Real s = Lanes::mul(Lanes::sub(Lanes::mul(plane, Lanes::all(8.0f)), o), inv);
-        return Lanes::select(moves, s, Lanes::all(1e38f));
     }
 };
 
