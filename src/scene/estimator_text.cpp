@@ -46,18 +46,28 @@ std::vector<std::string> reasons(const RestirParams& p)
 {
     std::vector<std::string> out;
     if (!p.corrections) out.emplace_back("corrections = false");
-    if (p.reuse == ReuseMode::Off) return out;
-    if (p.reuse != ReuseMode::Auto) {
-        if (p.visibility == TargetVisibility::None) out.emplace_back("visibility = none");
-        if (p.mis == ReuseMis::Constant) out.emplace_back("mis = constant");
+    const bool reuses_paths = p.indirect_reuse != IndirectReuse::Off;
+    const bool reuses_media = p.reuse != ReuseMode::Off && p.reuse != ReuseMode::Auto;
+    if (reuses_media && p.visibility == TargetVisibility::None) {
+        out.emplace_back("visibility = none");
     }
-    if (!is_surface_reuse_unbiased(p)) out.push_back(surface_reason(p));
+    if ((reuses_media || reuses_paths) && p.mis == ReuseMis::Constant) {
+        out.emplace_back("mis = constant");
+    }
+    if (reuses_paths_in_time(p) && p.indirect_suffix == IndirectSuffix::BiasedValidated) {
+        out.emplace_back("indirect_suffix = biased-validated");
+    }
+    if (p.reuse != ReuseMode::Off && !is_surface_reuse_unbiased(p)) {
+        out.push_back(surface_reason(p));
+    }
     return out;
 }
 
 std::string restir_text(const RestirParams& p)
 {
-    const std::string text = fmt::format("restir, reuse {}, ", reuse_name(p.reuse));
+    const std::string text =
+        fmt::format("restir, reuse {}{}, ", reuse_name(p.reuse),
+                    p.indirect_reuse == IndirectReuse::Off ? "" : ", paths reused");
     const std::vector<std::string> why = reasons(p);
     MOTE_ASSERT(why.empty() == is_unbiased(p));
     return text + (why.empty() ? "unbiased" : fmt::format("biased: {}", fmt::join(why, ", ")));

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "scene/estimator_text.h"
 #include "support/scene_files.h"
 
@@ -140,6 +142,34 @@ TEST(RestirPresets, EstimatorTextsTellReuseAndWhyImagesAreBiased)
     EXPECT_EQ(text_of("biased-weighted-visibility"),
               "restir, reuse both, biased: surface.visibility = weighted");
     EXPECT_EQ(text_of("biased-constant-mis", "reuse = \"off\"\n"), "restir, reuse off, unbiased");
+    EXPECT_EQ(text_of("default", "indirect_reuse = \"both\"\n"),
+              "restir, reuse auto, paths reused, unbiased");
+    EXPECT_EQ(text_of("default",
+                      "indirect_reuse = \"temporal\"\nindirect_suffix = \"biased-validated\"\n"),
+              "restir, reuse auto, paths reused, biased: indirect_suffix = biased-validated");
+}
+
+TEST(RestirPresets, ImagesCallThemselvesBiasedExactlyWhereTheyAre)
+{
+    RenderDescription render;
+    render.estimator = EstimatorKind::Restir;
+    RestirParams& p = render.restir;
+    for (int bits = 0; bits < 5 * 2 * 3 * 4 * 2; ++bits) {
+        int rest = bits;
+        const auto take = [&](int count) {
+            const int value = rest % count;
+            rest /= count;
+            return value;
+        };
+        p.reuse = static_cast<ReuseMode>(take(5));
+        p.visibility = take(2) == 0 ? TargetVisibility::Exact : TargetVisibility::None;
+        p.mis = std::array{ReuseMis::Auto, ReuseMis::Pairwise,
+                           ReuseMis::Constant}[static_cast<size_t>(take(3))];
+        p.indirect_reuse = static_cast<IndirectReuse>(take(4));
+        p.indirect_suffix = static_cast<IndirectSuffix>(take(2));
+        const bool says_biased = estimator_text(render).find("unbiased") == std::string::npos;
+        EXPECT_EQ(says_biased, !is_unbiased(p)) << estimator_text(render);
+    }
 }
 
 TEST(RestirPresets, UnknownOnesAreNamedWithThoseThereAre)
