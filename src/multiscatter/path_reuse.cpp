@@ -65,29 +65,40 @@ MisForm temporal_form(const RestirParams& params, bool still)
     return form == MisForm::Contribution ? MisForm::Pairwise : form;
 }
 
+/// Calls f(x, y, own domain, numbers) for the pixels of a tile that see media; what pixels have of
+/// their own is `out` until f says otherwise.
+template <class F>
+void for_each_pixel_of_media(const PathsView& pass, const Tile& tile, const PixelRng& rng,
+                             const PathOutput& out, F&& f)
+{
+    PixelDomain own;
+    for (int y = tile.y0; y < tile.y1; ++y) {
+        for (int x = tile.x0; x < tile.x1; ++x) {
+            out.pixels.at(x, y) = pass.pixels.at(x, y);
+            if (!(pass.domains.depth(x, y) > 0.0f)) continue;
+            pass.domains.load(x, y, own);
+            Rng numbers = rng(x, y);
+            f(x, y, own, numbers);
+        }
+    }
+}
+
 }  // namespace
 
 void reuse_paths_in_time(const PathsView& pass, const PathHistory& before, const Tile& tile,
                          const PixelRng& rng, const PathOutput& out, ReuseCounts& counts)
 {
     const MisForm form = temporal_form(pass.world.frame.params, !before.change.any());
-    PixelDomain own;
     PixelDomain earlier;
-    for (int y = tile.y0; y < tile.y1; ++y) {
-        for (int x = tile.x0; x < tile.x1; ++x) {
-            const PathPixel& mine = pass.pixels.at(x, y);
-            out.pixels.at(x, y) = mine;
-            if (!(pass.domains.depth(x, y) > 0.0f)) continue;
-            pass.domains.load(x, y, own);
-            Rng numbers = rng(x, y);
+    for_each_pixel_of_media(
+        pass, tile, rng, out, [&](int x, int y, const PixelDomain& own, Rng& numbers) {
             const std::optional<OtherPath> other =
                 history_of(pass, before, x, y, own, earlier, numbers);
-            if (!other) continue;
+            if (!other) return;
             ++counts.histories;
-            out.pixels.at(x, y) =
-                combine_paths(mine, {&*other, 1}, form, numbers, out.light.at(x, y));
-        }
-    }
+            out.pixels.at(x, y) = combine_paths(pass.pixels.at(x, y), {&*other, 1}, form, numbers,
+                                                out.light.at(x, y));
+        });
 }
 
 void reuse_paths_in_space(const PathsView& pass, const Tile& tile, const PixelRng& rng,
@@ -97,15 +108,10 @@ void reuse_paths_in_space(const PathsView& pass, const Tile& tile, const PixelRn
     const RestirParams& params = pass.world.frame.params;
     const MisForm form = spatial_rules(params).mis;
     std::vector<OtherPath> others;
-    PixelDomain own;
     PixelDomain other;
-    for (int y = tile.y0; y < tile.y1; ++y) {
-        for (int x = tile.x0; x < tile.x1; ++x) {
+    for_each_pixel_of_media(
+        pass, tile, rng, out, [&](int x, int y, const PixelDomain& own, Rng& numbers) {
             const PathPixel& mine = pass.pixels.at(x, y);
-            out.pixels.at(x, y) = mine;
-            if (!(pass.domains.depth(x, y) > 0.0f)) continue;
-            pass.domains.load(x, y, own);
-            Rng numbers = rng(x, y);
             const float turn = 2.0f * pi * numbers.uniform();
             others.clear();
             const auto add = [&](int nx, int ny) {
@@ -119,10 +125,9 @@ void reuse_paths_in_space(const PathsView& pass, const Tile& tile, const PixelRn
             for_each_neighbour(x, y, pass.domains.width(), pass.domains.height(),
                                params.spatial.neighbours, params.spatial.radius_px, turn, add);
             counts.neighbours += static_cast<int64_t>(others.size());
-            if (others.empty()) continue;
+            if (others.empty()) return;
             out.pixels.at(x, y) = combine_paths(mine, others, form, numbers, out.light.at(x, y));
-        }
-    }
+        });
 }
 
 }  // namespace mote

@@ -3,7 +3,6 @@
 #include "support/expect_error.h"
 #include "support/png_bytes.h"
 #include "support/temporary_folder.h"
-#include "surfaces/gltf/gltf_convert.h"
 #include "surfaces/gltf/gltf_scene.h"
 #include "surfaces/gltf_text.h"
 #include "surfaces/meshes.h"
@@ -379,25 +378,6 @@ TEST(Gltf, BuffersInFilesBesideIt)
     expect_same(load_gltf(path).parts[0].mesh, quad);
     folder.write("data.bin", text.buffer.substr(1));
     expect_error([&] { (void)load_gltf(path); }, ExitCode::Input, {"a.gltf: ", "size mismatch"});
-}
-
-/// What a picture lacks is told, what is shown is not.
-TEST(Gltf, TellsWhatIsLeftOut)
-{
-    tinygltf::Model model;
-    model.extensionsUsed = {"KHR_texture_transform", "KHR_materials_emissive_strength"};
-    model.samplers.resize(1);
-    model.meshes.resize(1);
-    model.meshes[0].primitives.resize(1);
-    EXPECT_TRUE(left_out(model).empty());
-    model.extensionsUsed.emplace_back("KHR_materials_clearcoat");
-    model.samplers[0].wrapT = TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE;
-    model.samplers[0].magFilter = TINYGLTF_TEXTURE_FILTER_NEAREST;
-    model.meshes[0].primitives[0].attributes["COLOR_0"] = 0;
-    const std::vector<std::string> list = left_out(model);
-    ASSERT_EQ(list.size(), 4u);
-    EXPECT_EQ(list[0], "vertex colours (COLOR_0)");
-    EXPECT_EQ(list[3], "KHR_materials_clearcoat");
 }
 
 }  // namespace
