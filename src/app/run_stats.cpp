@@ -1,5 +1,6 @@
 #include "app/run_stats.h"
 
+#include <algorithm>
 #include <ctime>
 
 #include <nlohmann/json.hpp>
@@ -78,7 +79,10 @@ Json to_json(const FrameRecord& r)
                     {"negative_values", r.prepare.negative_values}};
     j["paths"] = r.render.paths;
     j["dropped_non_finite"] = r.render.dropped_non_finite;
-    j["truncated_paths"] = r.render.truncated_paths;
+    const Truncation& truncation = r.render.truncation;
+    j["truncated_paths"] = truncation.paths;
+    j["truncated_weight"] =
+        truncation.weight / static_cast<double>(std::max<int64_t>(r.render.paths, 1));
     j["majorant_violations"] = r.render.tracking.majorant_violations;
     j["tracking"] = {{"free_flights", r.render.tracking.free_flights},
                      {"shadow_rays", r.render.tracking.shadow_rays},

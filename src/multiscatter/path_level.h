@@ -43,7 +43,8 @@ struct SharingContext {
     size_t group_size = 64;              ///< vertices that share their paths
     float time = 0.0f;                   ///< of all rays
     WalkCounts& counts;
-    bool& truncated;
+    float& cut;  ///< weight, in the image, that paths had left when max_bounces cut them
+    float near_share = 0.0f;  ///< see PathSharing
 };
 
 }  // namespace mote

@@ -17,8 +17,8 @@ bool is_still_valid(const PathWorld& world, const ReusedPath& y, Rng& rng)
 {
     if (y.form == PathForm::Replay || rng.uniform() >= checked_share) return true;
     ReusedPath again = y;
-    bool truncated = false;
-    find_light(world, again, truncated);
+    float ignored = 0.0f;
+    find_light(world, again, ignored);
     const float now = luminance(again.E);
     const float then = luminance(y.E);
     return now <= agreeing_factor * then && then <= agreeing_factor * now;

@@ -23,7 +23,11 @@ struct PathVertex {
                                    ///< vertices their share of the pixel's light
     Vec3 wo{0.0f};                 ///< with `lobe`, how directions are proposed: of first vertices
     Phase lobe;                    ///< as it scatters, else for all together that look at it
-    int from = 0;                  ///< the vertex before; of first ones the pixel of the tile
+    /// Paths do; places that were drawn around lamps are looked at for lamps' light alone.
+    bool goes_on = true;
+    float carried = 1.0f;  ///< weight in the image of the path that has found it
+    /// The vertex before; of first ones the pixel of the tile; -1: none, drawn around a lamp.
+    int from = 0;
     /// Of the transmittance to the vertex before: log of assumed over true.
     float log_excess = 0.0f;
     IncidentSample arrivals[most_arrivals];

@@ -3,10 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "multiscatter/near_lamps.h"
 #include "multiscatter/vertex_lanes.h"
 #include "reference/path_tracer.h"
 #include "reference/trace_segment.h"
 #include "reference/visibility.h"
+#include "volumes/media_at.h"
+#include "volumes/media_extent.h"
 
 namespace mote {
 namespace {
@@ -42,12 +45,14 @@ class PathSender {
         const size_t before = next_.vertices.size();
         if (share_out(members)) {
             fill_lanes(level_.vertices, members, scratch_.shares, scratch_.lanes);
+            look_for_lamps(members);
             // One place in every stratum of the shares: whole paths go where they are due.
             float left = is_first_ ? rng_.uniform() : 0.5f;
             for (size_t k = 0; k < members.size(); ++k) {
                 left += scratch_.shares[k] * static_cast<float>(members.size());
                 for (; left >= 1.0f; left -= 1.0f) send_path(members, members[k]);
             }
+            near_.for_each_point(rng_, [&](Vec3 y) { look_at(members, y); });
         }
         level_.found.push_back({before, next_.vertices.size() - before});
     }
@@ -64,7 +69,41 @@ class PathSender {
             sum += scratch_.shares[i];
         }
         for (float& share : scratch_.shares) share /= sum;
+        path_weight_ = sum / static_cast<float>(members.size());
         return sum > 0.0f;
+    }
+
+    void look_for_lamps(std::span<const int> members)
+    {
+        near_.clear();
+        const float count = context_.near_share * static_cast<float>(members.size());
+        if (!(count > 0.0f)) return;
+        Vec3 center(0.0f);
+        for (const int i : members) center += level_.vertices[static_cast<size_t>(i)].x;
+        center /= static_cast<float>(members.size());
+        const Vec3 member = level_.vertices[static_cast<size_t>(members.front())].x;
+        const float sigma_t = sigma_t_at(context_.trace.scene.media, member, context_.time);
+        near_.choose(context_.trace, center, sigma_t, static_cast<int>(std::ceil(count)), rng_);
+    }
+
+    /// A place near a lamp: what scatters there, as paths would find it.
+    void look_at(std::span<const int> members, Vec3 y)
+    {
+        PathVertex found;
+        found.x = y;
+        found.from = -1;
+        found.goes_on = false;
+        float sigma_t = 0.0f;
+        for_each_medium_at(context_.trace.scene.media, y, context_.time,
+                           [&](const Volume& volume, Vec3 local, float s) {
+                               sigma_t += s;
+                               if (rng_.uniform() * sigma_t >= s) return;
+                               found.phase = &volume.phase;
+                               found.weight =
+                                   albedo_at(volume, object_from_local(volume).point(local));
+                           });
+        if (!found.phase || !(max_component(found.weight) > 0.0f)) return;
+        connect(members, found, sigma_t);
     }
 
     void send_path(std::span<const int> members, int from)
@@ -78,6 +117,7 @@ class PathSender {
         if (!is_first_) v.add({wi, segment.light() / pdf});
         PathVertex found;
         found.from = from;
+        found.carried = is_first_ ? path_weight_ : v.carried;
         if (segment.collision) {
             const Collision& c = *segment.collision;
             const Volume& volume =
@@ -86,6 +126,7 @@ class PathSender {
             found.phase = &volume.phase;
             found.weight = albedo_at(volume, c.p_object);
             if (!(max_component(found.weight) > 0.0f)) return;
+            found.carried *= max_component(found.weight);
         } else if (segment.vertex) {
             found.x = segment.vertex->p;
             found.surface = static_cast<int>(next_.surfaces.size());
@@ -93,11 +134,15 @@ class PathSender {
         } else {
             return;
         }
-        connect(members, found);
+        const float sigma_t = found.surface < 0 && near_.density(found.x) > 0.0f
+                                  ? sigma_t_at(context_.trace.scene.media, found.x, context_.time)
+                                  : 0.0f;
+        connect(members, found, sigma_t);
     }
 
-    /// Shares a vertex out among the group that it was found by.
-    void connect(std::span<const int> members, PathVertex& found)
+    /// Shares a vertex out among the group that it was found by. `sigma_t`: there, in a medium; not
+    /// needed away from lamps.
+    void connect(std::span<const int> members, PathVertex& found, float sigma_t)
     {
         const size_t first = level_.kernels.size();
         level_.kernels.resize(first + scratch_.lanes.width());
@@ -111,13 +156,21 @@ class PathSender {
             level_.kernels.resize(first);
             return;
         }
+        const float by_paths = view.density * static_cast<float>(members.size());
+        // Where lamps' light is looked for both ways, both weights sum to 1.
+        const float near = sigma_t > 0.0f ? near_.density(found.x) / sigma_t : 0.0f;
         if (found.surface >= 0) {
             light_surface(members, kernel, found);
         } else {
             aim(view, found);
-            add_shadow_ray(next_.event(found, context_.time), found);
+            const float share = found.goes_on ? by_paths / (by_paths + near) : 1.0f;
+            add_shadow_ray(next_.event(found, context_.time), share, found);
+            if (!found.goes_on && found.arrival_count == 0) {
+                level_.kernels.resize(first);
+                return;
+            }
         }
-        const float scale = 1.0f / (view.density * static_cast<float>(members.size()));
+        const float scale = 1.0f / (found.goes_on ? by_paths : by_paths + near);
         for (float& k : kernel) k *= scale;
         next_.vertices.push_back(found);
     }
@@ -153,13 +206,14 @@ class PathSender {
         v.lobe.g_b *= length;
     }
 
-    void add_shadow_ray(const ScatterEvent& event, PathVertex& v)
+    void add_shadow_ray(const ScatterEvent& event, float share, PathVertex& v)
     {
         const TraceContext& trace = context_.trace;
         const std::optional<ShadowRay> ray = sample_shadow_ray(trace, event, rng_);
         if (!ray || ray->scattering.f == Spectrum(0.0f)) return;
-        v.add({ray->wi,
-               ray->light * estimate_visibility(trace, event, ray->wi, ray->distance, rng_)});
+        const Spectrum light =
+            ray->light * estimate_visibility(trace, event, ray->wi, ray->distance, rng_);
+        v.add({ray->wi, share * light});
     }
 
     /// Surfaces may scatter in peaks: directions are drawn for one of the ways to it, as likely as
@@ -179,7 +233,7 @@ class PathSender {
         const WayMixture mixture{scratch_.wo, scratch_.way_shares};
         ScatterEvent event = next_.event(v, context_.time);
         event.mixture = &mixture;
-        add_shadow_ray(event, v);
+        add_shadow_ray(event, 1.0f, v);
         follow_own_path(context_, event, event_count_ + 1, v, rng_);
     }
 
@@ -189,6 +243,8 @@ class PathSender {
     PathLevel& level_;
     PathLevel& next_;
     Rng& rng_;
+    NearLamps near_;
+    float path_weight_ = 0.0f;  ///< in the image, of each path that a first group sends
     GroupScratch scratch_;
 };
 
@@ -196,16 +252,19 @@ class PathSender {
 void measure_excess(const SharingContext& context, const PathLevel& level, PathLevel& next)
 {
     std::vector<DepthQuery> queries;
+    std::vector<PathVertex*> traced;
     queries.reserve(next.vertices.size());
-    for (const PathVertex& v : next.vertices) {
+    for (PathVertex& v : next.vertices) {
+        if (v.from < 0) continue;
         const Vec3 x = level.vertices[static_cast<size_t>(v.from)].x;
         const float distance = glm::length(v.x - x);
         queries.push_back({x, distance, (v.x - x) / distance, context.time, infinity});
+        traced.push_back(&v);
     }
     std::vector<float> taus(queries.size());
     optical_depths(context.trace.scene.media, queries, taus, context.counts);
     for (size_t j = 0; j < taus.size(); ++j) {
-        PathVertex& v = next.vertices[j];
+        PathVertex& v = *traced[j];
         const float assumed = assumed_transmittance(context.extinction, v.x, queries[j].o);
         v.log_excess = std::log(assumed) + std::min(taus[j], deepest);
     }
@@ -217,7 +276,8 @@ void send_paths(const SharingContext& context, int event_count, bool is_first, P
                 PathLevel& next, Rng& rng)
 {
     for (size_t i = 0; i < level.vertices.size(); ++i) {
-        if (level.vertices[i].surface < 0) level.order.push_back(static_cast<int>(i));
+        const PathVertex& v = level.vertices[i];
+        if (v.surface < 0 && v.goes_on) level.order.push_back(static_cast<int>(i));
     }
     level.groups = make_groups(level.vertices, context.group_size, level.order);
     PathSender sender(context, event_count, is_first, level, next, rng);
@@ -238,8 +298,9 @@ void follow_own_path(const SharingContext& context, const ScatterEvent& event, i
     if (!s) return;
     const float pdf = s->scattering.pdf_dir;
     const LightRay light_ray{Ray{ray_origin(event, s->wi), s->wi, event.time}, pdf, false};
-    const Spectrum arrives =
-        trace_scattered_ray(trace, light_ray, event_count, aim, rng, context.truncated);
+    float cut = 0.0f;
+    const Spectrum arrives = trace_scattered_ray(trace, light_ray, event_count, aim, rng, cut);
+    context.cut += v.carried * max_component(s->scattering.f) / pdf * cut;
     v.add({s->wi, arrives / pdf});
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "multiscatter/gather_light.h"
+#include "multiscatter/near_lamps.h"
 #include "multiscatter/send_paths.h"
 #include "volumes/media_extent.h"
 
@@ -10,13 +11,17 @@ namespace mote {
 
 void share_paths(const TraceContext& trace, const CoarseExtinction& extinction,
                  const PathSharing& sharing, std::vector<PathVertex> first, Rng& rng,
-                 std::span<Spectrum> light, WalkCounts& counts, bool& truncated)
+                 std::span<Spectrum> light, WalkCounts& counts, float& cut)
 {
     // With surfaces every member of a group asks whether it sees what another one has found.
     const int group_size = trace.scene.surfaces ? sharing.group_size / 4 : sharing.group_size;
-    const SharingContext context{
-        trace,      extinction, static_cast<size_t>(std::max(1, group_size)),
-        cache_time, counts,     truncated};
+    const SharingContext context{trace,
+                                 extinction,
+                                 static_cast<size_t>(std::max(1, group_size)),
+                                 cache_time,
+                                 counts,
+                                 cut,
+                                 has_small_lamps(trace.scene) ? sharing.near_share : 0.0f};
     const int last = std::min(sharing.levels, trace.params.max_bounces - 1);
     std::vector<PathLevel> levels(static_cast<size_t>(last) + 1);
     levels.front().vertices = std::move(first);
@@ -26,7 +31,7 @@ void share_paths(const TraceContext& trace, const CoarseExtinction& extinction,
     }
     PathLevel& end = levels.back();
     for (PathVertex& v : end.vertices) {
-        if (v.surface >= 0) continue;
+        if (v.surface >= 0 || !v.goes_on) continue;
         follow_own_path(context, end.event(v, context.time), last + 1, v, rng);
     }
     for (int l = last - 1; l >= 0; --l) {

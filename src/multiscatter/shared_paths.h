@@ -15,13 +15,15 @@ namespace mote {
 struct PathSharing {
     int group_size = 64;  ///< vertices that share their paths; a quarter where there are surfaces
     int levels = 2;  ///< of vertices, from the first ones on; behind them each has its own path
+    float near_share = 0.25f;  ///< places near lamps that are looked at besides, per path
 };
 
 /// Light scattered twice and more, at the scattering events on the rays of a tile's pixels. Each
 /// vertex sends one path on to a second one; vertices close together form groups, and all of a
 /// group take the light that any of their paths finds, in proportion to how likely they would have
 /// found it themselves. The same once more from the second vertices, and then the path tracer.
-/// Added to light[v.from], times v.weight. Unbiased given the first vertices, whatever they are.
+/// Added to light[v.from], times v.weight; to `cut`, what the paths had left when max_bounces cut
+/// them (see PathResult), so weighted. Unbiased given the first vertices, whatever they are.
 ///
 /// What ReSTIR's spatial reuse of suffixes does with reservoirs (Lin et al. 2021, 2022), for whole
 /// groups at once, with all samples instead of one; Deng et al. 2021 ("Path Graphs") gather alike,
@@ -30,6 +32,6 @@ struct PathSharing {
 /// of the group. Memory: about 1 KB per first vertex of tiles under way.
 void share_paths(const TraceContext& context, const CoarseExtinction& extinction,
                  const PathSharing& sharing, std::vector<PathVertex> first, Rng& rng,
-                 std::span<Spectrum> light, WalkCounts& counts, bool& truncated);
+                 std::span<Spectrum> light, WalkCounts& counts, float& cut);
 
 }  // namespace mote

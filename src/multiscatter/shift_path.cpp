@@ -17,8 +17,8 @@ std::optional<ShiftedPath> shift_path(const ReusedPath& y, const PathEndpoint& f
         const RayPoint first = point_at(to.world.frame, to.domain, out.y.u);
         out.y.r = glm::length(out.y.x2 - first.x);
         out.jacobian *= sqr(y.r / out.y.r);
-        bool truncated = false;
-        if (map.suffix == SuffixRule::Traced) find_light(to.world, out.y, truncated);
+        float ignored = 0.0f;
+        if (map.suffix == SuffixRule::Traced) find_light(to.world, out.y, ignored);
     }
     out.f = eval_path(to.world, to.domain, out.y);
     const bool is_usable = out.jacobian > 0.0f && std::isfinite(out.jacobian);

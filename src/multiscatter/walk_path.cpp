@@ -117,13 +117,13 @@ std::optional<SecondVertex> walk_to_second(const PathWorld& world, const PixelDo
     return v;
 }
 
-void find_light(const PathWorld& world, ReusedPath& path, bool& truncated)
+void find_light(const PathWorld& world, ReusedPath& path, float& cut)
 {
     path.E = Spectrum(0.0f);
     if (path.form == PathForm::ToRay) {
         Rng rng = numbers_of(world, path.key, Stream::PathSuffix);
         const LightRay ray{Ray{path.x2, path.wi, path_time}, inv_4pi, false};
-        path.E = trace_scattered_ray(world.trace, ray, 2, Aim{}, rng, truncated);
+        path.E = trace_scattered_ray(world.trace, ray, 2, Aim{}, rng, cut);
         return;
     }
     Rng rng = numbers_of(world, path.key, Stream::PathLight);
@@ -135,7 +135,7 @@ void find_light(const PathWorld& world, ReusedPath& path, bool& truncated)
 }
 
 Spectrum light_of_second(const PathWorld& world, const SecondVertex& second, const WalkKey& key,
-                         bool& truncated)
+                         float& cut)
 {
     ScatterEvent event{second.x2, -second.w1, path_time};
     Spectrum albedo(1.0f);
@@ -156,14 +156,16 @@ Spectrum light_of_second(const PathWorld& world, const SecondVertex& second, con
         const Scattering& scattering = s->scattering;
         const LightRay ray{Ray{ray_origin(event, s->wi), s->wi, path_time}, scattering.pdf_dir,
                            false};
-        light += scattering.f / scattering.pdf_dir *
-                 trace_scattered_ray(world.trace, ray, 2, Aim{}, rng, truncated);
+        const Spectrum weight = scattering.f / scattering.pdf_dir;
+        float cut_behind = 0.0f;
+        light += weight * trace_scattered_ray(world.trace, ray, 2, Aim{}, rng, cut_behind);
+        cut += max_component(albedo * weight) * cut_behind;
     }
     return albedo * light;
 }
 
 void draw_paths(const PathWorld& world, const PixelDomain& domain, float u, const WalkKey& key,
-                std::vector<DrawnPath>& paths, bool& truncated)
+                std::vector<DrawnPath>& paths, float& cut)
 {
     const std::optional<SecondVertex> second = walk_to_second(world, domain, u, key);
     if (!second || !(max_component(second->carried) > 0.0f)) return;
@@ -174,7 +176,9 @@ void draw_paths(const PathWorld& world, const PixelDomain& domain, float u, cons
     y.u = u;
     y.key = key;
     if (!second->reconnects) {
-        add(y, second->carried * light_of_second(world, *second, key, truncated));
+        float cut_behind = 0.0f;
+        add(y, second->carried * light_of_second(world, *second, key, cut_behind));
+        cut += max_component(second->carried) * cut_behind;
         return;
     }
     y.x2 = second->x2;
@@ -183,13 +187,17 @@ void draw_paths(const PathWorld& world, const PixelDomain& domain, float u, cons
     const auto value = [&](const ReusedPath& path) {
         return second->carried * path.E * scattered(world.media(), path.x2, wo, path.wi);
     };
+    float cut_behind = 0.0f;
     y.form = PathForm::ToLight;
-    find_light(world, y, truncated);
+    find_light(world, y, cut_behind);
     add(y, value(y));
     y.form = PathForm::ToRay;
     y.wi = second->wi;
-    find_light(world, y, truncated);
+    find_light(world, y, cut_behind);
     add(y, value(y) / second->density_wi);
+    if (!(cut_behind > 0.0f)) return;
+    const Spectrum left = second->carried * scattered(world.media(), y.x2, wo, y.wi);
+    cut += max_component(left) / second->density_wi * cut_behind;
 }
 
 Spectrum eval_path(const PathWorld& world, const PixelDomain& domain, const ReusedPath& path)
@@ -197,8 +205,8 @@ Spectrum eval_path(const PathWorld& world, const PixelDomain& domain, const Reus
     if (path.form == PathForm::Replay) {
         const std::optional<SecondVertex> second = walk_to_second(world, domain, path.u, path.key);
         if (!second || second->reconnects) return Spectrum(0.0f);
-        bool truncated = false;
-        return second->carried * light_of_second(world, *second, path.key, truncated);
+        float ignored = 0.0f;
+        return second->carried * light_of_second(world, *second, path.key, ignored);
     }
     const RayPoint point = point_at(world.frame, domain, path.u);
     const float sigma_t = sigma_t_at(world.media(), path.x2, path_time);

@@ -57,12 +57,12 @@ struct SecondVertex {
 /// What is found with the random numbers of a path that ends at x2: of ToLight where its shadow ray
 /// goes, too. Light that either form could find counts by shares that do not depend on where x2 is
 /// seen from, so that E stays what it is in all pixels: as if scattered rays were spread evenly.
-/// `truncated` is set where max_bounces cut a path.
-void find_light(const PathWorld& world, ReusedPath& path, bool& truncated);
+/// To `cut` is added what the ray has left when max_bounces cuts it, see PathResult.
+void find_light(const PathWorld& world, ReusedPath& path, float& cut);
 
 /// All light that a walk's second vertex scatters towards the first, that it reflects included.
 [[nodiscard]] Spectrum light_of_second(const PathWorld& world, const SecondVertex& second,
-                                       const WalkKey& key, bool& truncated);
+                                       const WalkKey& key, float& cut);
 
 /// A path as drawn: how much it brings over its density.
 struct DrawnPath {
@@ -72,7 +72,7 @@ struct DrawnPath {
 
 /// Walks once from u and appends what it finds, up to two paths.
 void draw_paths(const PathWorld& world, const PixelDomain& domain, float u, const WalkKey& key,
-                std::vector<DrawnPath>& paths, bool& truncated);
+                std::vector<DrawnPath>& paths, float& cut);
 
 /// The light that a path brings in a pixel's domain, in its form's measure: transmittance of the
 /// first two segments is exact. Black where the walk does not exist there, or would have another

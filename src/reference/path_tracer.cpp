@@ -71,7 +71,8 @@ void follow(const TraceContext& context, const PathState& start,
         const std::optional<SurfaceVertex>& vertex = found.vertex;
         const Ray& ray = light_ray.ray;
 
-        if (is_last) result.truncated = event_count > 0 || collision || vertex;
+        const bool goes_on = event_count > 0 || collision || vertex;
+        if (is_last && goes_on) result.cut = max_component(beta);
         if (!collision && !vertex) return;
         ScatterEvent event{Vec3(0.0f), -ray.d, ray.time, nullptr, nullptr, nullptr};
         Spectrum albedo(0.0f);
@@ -148,12 +149,12 @@ PathResult trace_after_event(const TraceContext& context, const ScatterEvent& fi
 }
 
 Spectrum trace_scattered_ray(const TraceContext& context, const LightRay& light_ray,
-                             int event_count, const Aim& aim, Rng& rng, bool& truncated)
+                             int event_count, const Aim& aim, Rng& rng, float& cut)
 {
     PathResult result;
     follow(context, {light_ray, Spectrum(1.0f), event_count, false, aim}, std::nullopt, rng,
            result);
-    truncated |= result.truncated;
+    cut += result.cut;
     return result.direct + result.indirect;
 }
 

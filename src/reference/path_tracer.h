@@ -23,7 +23,9 @@ struct PathResult {
     float depth = infinity;           ///< of the first event, whether it scatters or not [m]
     Spectrum albedo{0.0f};            ///< at the first event
     int object = -1;                  ///< of the first event, into Surfaces; -1: in a medium
-    bool truncated = false;           ///< max_bounces cut a path that could have gone on
+    /// Weight that the path had left when max_bounces cut it, 0: it was not cut. What is missing is
+    /// at most this times the light that would have arrived.
+    float cut = 0.0f;
 
     [[nodiscard]] Spectrum L() const
     {
@@ -51,9 +53,9 @@ struct PathResult {
 
 /// Radiance that arrives on a ray along which an event scattered light, `event_count` events behind
 /// it, that one included: together with estimate_direct_light at the event, and with what it has
-/// sought by `aim`, all light scattered there. `truncated` is set where max_bounces cut a path.
+/// sought by `aim`, all light scattered there. The ray's share of PathResult::cut is added to
+/// `cut`.
 [[nodiscard]] Spectrum trace_scattered_ray(const TraceContext& context, const LightRay& light_ray,
-                                           int event_count, const Aim& aim, Rng& rng,
-                                           bool& truncated);
+                                           int event_count, const Aim& aim, Rng& rng, float& cut);
 
 }  // namespace mote

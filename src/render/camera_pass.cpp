@@ -125,7 +125,7 @@ void PassCounts::add(const PassCounts& other)
     candidates += other.candidates;
     surfaces += other.surfaces;
     emission_integrals += other.emission_integrals;
-    truncated += other.truncated;
+    truncation.add(other.truncation);
     tracking.add(other.tracking);
 }
 

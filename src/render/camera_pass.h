@@ -6,6 +6,7 @@
 #include "render/aov.h"
 #include "render/film.h"
 #include "render/pixel_split.h"
+#include "render/truncation.h"
 #include "restir/control_variate.h"
 #include "restir/in_view.h"
 #include "restir/pixel_domain.h"
@@ -61,7 +62,7 @@ struct PassCounts {
     int64_t candidates = 0;          ///< in media and on surfaces
     int64_t surfaces = 0;            ///< passes that sampled a surface's light
     int64_t emission_integrals = 0;  ///< along camera rays, over all media that glow
-    int64_t truncated = 0;           ///< passes whose light could have scattered on
+    Truncation truncation;           ///< of passes
     TrackingCounts tracking;         ///< of the path tracer's part
 
     void add(const PassCounts& other);

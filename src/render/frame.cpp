@@ -43,7 +43,7 @@ float add_first_surface(const Surfaces& surfaces, const Ray& ray, FilmSample& sa
     return hit->t;
 }
 
-FilmSample trace_sample(const FrameInputs& frame, int x, int y, uint32_t sample, bool& truncated)
+FilmSample trace_sample(const FrameInputs& frame, int x, int y, uint32_t sample, float& cut)
 {
     const Scene& scene = frame.scene;
     const auto frame_number = static_cast<uint32_t>(scene.frame);
@@ -55,7 +55,7 @@ FilmSample trace_sample(const FrameInputs& frame, int x, int y, uint32_t sample,
 
     Rng path_rng(frame.render.seed, frame_number, Stream::Path, pixel, sample);
     const PathResult path = trace_path(scene, frame.lights, frame.render.path, ray, path_rng);
-    truncated = path.truncated;
+    cut = path.cut;
     FilmSample out;
     out.direct = path.direct;
     out.indirect = path.indirect;
@@ -90,41 +90,41 @@ bool render_paths(const FrameInputs& frame, const FrameControl& control, Film& f
     const Camera& camera = frame.scene.camera;
     std::atomic<bool> stopped{false};
     std::atomic<int64_t> dropped{0};
-    std::atomic<int64_t> truncated_paths{0};
     std::mutex mutex;
     TrackingCounts tracking;
+    Truncation truncation;
     const auto must_stop = [&] {
         if (control.stop && control.stop()) stopped.store(true, std::memory_order_relaxed);
         return stopped.load(std::memory_order_relaxed);
     };
     for_each_tile(camera.width, camera.height, [&](const Tile& tile) {
         int64_t tile_dropped = 0;
-        int64_t tile_truncated = 0;
+        Truncation truncation_here;
         const TrackingCounts tracking_before = tracking_counts;
         for (int y = tile.y0; y < tile.y1; ++y) {
             for (int x = tile.x0; x < tile.x1; ++x) {
                 PixelFilm pixel;
                 for (int i = 0; i < frame.render.samples; ++i) {
                     if (i % samples_between_polls == 0 && must_stop()) return;
-                    bool truncated = false;
+                    float cut = 0.0f;
                     const FilmSample sample =
-                        trace_sample(frame, x, y, static_cast<uint32_t>(i), truncated);
+                        trace_sample(frame, x, y, static_cast<uint32_t>(i), cut);
                     tile_dropped += pixel.add(sample) ? 0 : 1;
-                    tile_truncated += truncated ? 1 : 0;
+                    truncation_here.add(cut);
                 }
                 film.store(x, y, pixel);
             }
         }
         dropped += tile_dropped;
-        truncated_paths += tile_truncated;
         {
             const std::lock_guard<std::mutex> lock(mutex);
             tracking.add(tracking_counts.since(tracking_before));
+            truncation.add(truncation_here);
         }
         if (control.tile_done) control.tile_done();
     });
     stats.dropped_non_finite = dropped;
-    stats.truncated_paths = truncated_paths;
+    stats.truncation = truncation;
     stats.tracking = tracking;
     return !stopped;
 }

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "image/layers.h"
+#include "render/truncation.h"
 #include "restir/cache_stats.h"
 #include "scene/description.h"
 #include "scene/scene.h"
@@ -25,7 +26,7 @@ struct FrameStats {
     double render_cpu_seconds = 0.0;  ///< process CPU time
     int64_t paths = 0;
     int64_t dropped_non_finite = 0;  ///< samples replaced by 0; must be 0
-    int64_t truncated_paths = 0;     ///< cut by max_bounces though they could have gone on
+    Truncation truncation;
     double cache_cpu_seconds = 0.0;  ///< building light caches and the index of lamps that rays
                                      ///< meet, part of render_cpu_seconds
     int64_t camera_rays = 0;         ///< tabulated by the ReSTIR estimator: those that met smoke

@@ -84,17 +84,19 @@ void add_indirect(const PassInputs& inputs, const PassKey& key, const PixelDomai
                   const SurfaceVertex* surface, int owner, std::vector<PathVertex>& first,
                   FilmSample& sample, PassCounts& counts)
 {
-    ++counts.truncated;
-    if (inputs.render.path.max_bounces < 2) return;
+    const float depth = domain.bins.depth();
+    const float lost = surface ? 1.0f : -std::expm1(-depth);
+    if (inputs.render.path.max_bounces < 2) {
+        counts.truncation.add(lost);
+        return;
+    }
     const Scene& scene = *inputs.domain.scene;
     if (inputs.nodes) {
         sample.indirect = scatter_along(*inputs.nodes, scene.media, domain.ray, domain.bins);
     }
     if (inputs.path_light) sample.indirect = inputs.path_light->at(key.x, key.y);
-    const float depth = domain.bins.depth();
-    const float lost = surface ? 1.0f : -std::expm1(-depth);
     const bool surface_only = inputs.nodes || inputs.path_light;
-    bool truncated = false;
+    float cut = 0.0f;
     if (lost > 0.0f && (surface || !surface_only)) {
         Rng rng = pass_rng(inputs, key, Stream::Indirect);
         const float step = 1.0f / paths_worth(lost, inputs.domain.params.indirect_paths);
@@ -122,10 +124,10 @@ void add_indirect(const PassInputs& inputs, const PassKey& key, const PixelDomai
             sample.indirect += weight * albedo * path.indirect;
             if (inputs.paths_bring_sky) sample.direct += weight * albedo * path.direct;
             sample.surface_indirect += weight * path.surface_indirect;
-            truncated |= path.truncated;
+            cut += weight * max_component(albedo) * path.cut;
         }
     }
-    counts.truncated += truncated ? 0 : -1;
+    counts.truncation.add(cut);
 }
 
 std::vector<Spectrum> light_shared_paths(const PassInputs& inputs, const PassKey& key,
@@ -135,11 +137,13 @@ std::vector<Spectrum> light_shared_paths(const PassInputs& inputs, const PassKey
     std::vector<Spectrum> light(static_cast<size_t>(first.back().from) + 1, Spectrum(0.0f));
     Rng rng = pass_rng(inputs, key, Stream::SharedPaths);
     const CachedGuesses guesses(*inputs.domain.caches);
-    bool truncated = false;
+    float cut = 0.0f;
     share_paths(context_with(inputs, guesses), *inputs.domain.caches->extinction, {},
-                std::move(first), rng, light, counts.light_rays, truncated);
+                std::move(first), rng, light, counts.light_rays, cut);
     first.clear();
-    if (truncated) counts.truncated += static_cast<int64_t>(light.size());
+    if (cut > 0.0f) {
+        counts.truncation.add({static_cast<int64_t>(light.size()), static_cast<double>(cut)});
+    }
     return light;
 }
 

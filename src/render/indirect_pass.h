@@ -32,7 +32,7 @@ void add_indirect(const PassInputs& inputs, const PassKey& key, const PixelDomai
 
 /// What shared paths bring by owner; empty if there is nothing to be lit. Owners count up in
 /// `first`, which is emptied. `key`: of all that share. If max_bounces cuts one path, all owners
-/// count as truncated.
+/// count as cut.
 [[nodiscard]] std::vector<Spectrum> light_shared_paths(const PassInputs& inputs, const PassKey& key,
                                                        std::vector<PathVertex>& first,
                                                        PassCounts& counts);

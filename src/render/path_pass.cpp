@@ -33,14 +33,14 @@ void walk_tile(const PassInputs& inputs, const PathWorld& world, const Tile& til
             Rng rng = pass_rng(inputs, key, Stream::Indirect);
             const float step = 1.0f / paths_worth(lost, inputs.domain.params.indirect_paths);
             paths.clear();
-            bool truncated = false;
+            float cut = 0.0f;
             WalkKey walk{static_cast<uint32_t>(scene.frame),
                          static_cast<uint32_t>(y * scene.camera.width + x), pass};
             for (float u = rng.uniform() * step; u < 1.0f; u += step) {
-                draw_paths(world, domain, std::min(u, one_minus_epsilon), walk, paths, truncated);
+                draw_paths(world, domain, std::min(u, one_minus_epsilon), walk, paths, cut);
                 walk.walk += 1u << first_walk_bit;
             }
-            n.truncated += truncated ? 1 : 0;
+            n.truncation.add(step * cut);
             n.candidates += static_cast<int64_t>(paths.size());
             Rng choices = pass_rng(inputs, key, Stream::PathChoice);
             out.pixels.at(x, y) =

@@ -125,7 +125,7 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
     }
     if (!plan.paths) history.paths = {};
     history.last = keeps_history ? domain : FrameDomain{};
-    stats.truncated_paths = counts.truncated;
+    stats.truncation = counts.truncation;
     stats.camera_rays = counts.bins.rays + static_cast<int64_t>(counts.lamps.rays);
     stats.missed_rays = counts.bins.misses;
     stats.light_rays = static_cast<int64_t>(counts.light_rays.rays);

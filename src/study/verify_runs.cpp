@@ -79,7 +79,7 @@ RunSource source_of(VerifySetup& setup, const Method& method, int samples, int s
                     render.estimator == EstimatorKind::Restir ? &setup.caches : nullptr,
                     [&](size_t, const LayeredImage& image, const FrameStats& stats) {
                         last = image;
-                        setup.truncated_paths += stats.truncated_paths;
+                        setup.truncated_paths += stats.truncation.paths;
                         require_sound(stats, seed);
                     });
         if (straight_passes > 0) {

@@ -55,7 +55,7 @@ TEST_P(ShippedScene, CountsNothingThatMustNotHappen)
             EXPECT_EQ(stats.dropped_non_finite, 0);
             EXPECT_EQ(stats.tracking.majorant_violations, 0);
             if (bounces != 10'000) continue;
-            EXPECT_EQ(stats.truncated_paths, 0);
+            EXPECT_EQ(stats.truncation.paths, 0);
         }
     }
 }

@@ -78,11 +78,11 @@ std::vector<SmallFrame> small_frames(const SmallPaths& how)
 void walk(const PathEndpoint& own, uint32_t frame, uint32_t i, SmallPixel& pixel)
 {
     std::vector<DrawnPath> paths;
-    bool truncated = false;
+    float cut = 0.0f;
     Rng rng(own.world.seed, frame, Stream::Test, i, 0);
     for (uint32_t k = 0; k < walks; ++k) {
         const float u = (static_cast<float>(k) + rng.uniform()) / walks;
-        draw_paths(own.world, own.domain, u, {frame, i, k}, paths, truncated);
+        draw_paths(own.world, own.domain, u, {frame, i, k}, paths, cut);
     }
     pixel.path = resample_paths(own, paths, 1.0f / walks, rng, pixel.own_light);
     pixel.light = pixel.own_light;

@@ -71,9 +71,9 @@ struct Sharing {
     {
         std::vector<Spectrum> light(1, Spectrum(0.0f));
         WalkCounts counts;
-        bool truncated = false;
+        float cut = 0.0f;
         const TraceContext aiming{scene, lights, path, nullptr, nullptr, &aims};
-        share_paths(aiming, extinction, sharing, first, rng, light, counts, truncated);
+        share_paths(aiming, extinction, sharing, first, rng, light, counts, cut);
         return light[0];
     }
 
@@ -81,9 +81,9 @@ struct Sharing {
     [[nodiscard]] Spectrum shared_with(Mistake mistake, Rng& rng) const
     {
         WalkCounts counts;
-        bool truncated = false;
+        float cut = 0.0f;
         const TraceContext context = trace();
-        const SharingContext sharing{context, extinction, 64, cache_time, counts, truncated};
+        const SharingContext sharing{context, extinction, 64, cache_time, counts, cut};
         PathLevel level;
         PathLevel next;
         level.vertices = first;
@@ -203,9 +203,9 @@ TEST(PathSharingStat, SharedLightHasLessNoise)
             Rng rng(1, i, Stream::Test, 0, 0);
             std::vector<Spectrum> light(2, Spectrum(0.0f));
             WalkCounts counts;
-            bool truncated = false;
+            float cut = 0.0f;
             share_paths(sharing.trace(), sharing.extinction, {.group_size = group_size},
-                        sharing.first, rng, light, counts, truncated);
+                        sharing.first, rng, light, counts, cut);
             stats.add(static_cast<double>(luminance(light[0])));
         }
         return estimate_mean(stats).standard_error();
@@ -222,12 +222,12 @@ TEST(PathSharing, NothingComesFromNothing)
     for (PathVertex& v : black) v.weight = Spectrum(0.0f);
     std::vector<Spectrum> light(1, Spectrum(0.0f));
     WalkCounts counts;
-    bool truncated = false;
+    float cut = 0.0f;
     Rng rng(1, 0, Stream::Test, 0, 0);
-    share_paths(sharing.trace(), sharing.extinction, {}, black, rng, light, counts, truncated);
-    share_paths(sharing.trace(), sharing.extinction, {}, {}, rng, light, counts, truncated);
+    share_paths(sharing.trace(), sharing.extinction, {}, black, rng, light, counts, cut);
+    share_paths(sharing.trace(), sharing.extinction, {}, {}, rng, light, counts, cut);
     EXPECT_EQ(light[0], Spectrum(0.0f));
-    EXPECT_FALSE(truncated);
+    EXPECT_EQ(cut, 0.0f);
 }
 
 }  // namespace

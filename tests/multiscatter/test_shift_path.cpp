@@ -64,9 +64,9 @@ Pair random_pair(const Frames& frames, ShiftKind kind, Rng& rng)
 std::optional<DrawnPath> random_path(const Pair& pair, uint32_t trial, Rng& rng)
 {
     std::vector<DrawnPath> paths;
-    bool truncated = false;
+    float cut = 0.0f;
     const auto frame = static_cast<uint32_t>(pair.from_world.frame.scene->frame);
-    draw_paths(pair.from_world, pair.from, rng.uniform(), {frame, trial, 0}, paths, truncated);
+    draw_paths(pair.from_world, pair.from, rng.uniform(), {frame, trial, 0}, paths, cut);
     if (paths.empty()) return std::nullopt;
     return paths[rng.next() % paths.size()];
 }

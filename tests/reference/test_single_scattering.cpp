@@ -214,7 +214,7 @@ TEST(SingleScattering, NoEventsMeansNoScatteredLight)
         EXPECT_EQ(result.direct, Spectrum(0.0f));
         EXPECT_EQ(result.indirect, Spectrum(0.0f));
         EXPECT_EQ(result.background.x, result.transmittance);
-        EXPECT_EQ(result.truncated, std::isfinite(result.depth));
+        EXPECT_EQ(result.cut, std::isfinite(result.depth) ? 1.0f : 0.0f);
         background += static_cast<double>(result.background.x) / 20'000;
     }
     // The environment is seen through the medium: binomial, 5 standard errors.
