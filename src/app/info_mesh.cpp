@@ -32,10 +32,8 @@ const char* kind_name(MaterialKind kind)
 
 std::string material_line(const GltfMaterial& material)
 {
-    const bool has_pictures = std::max({material.color, material.metallic_roughness,
-                                        material.normal, material.emission}) >= 0;
     return fmt::format("material \"{}\": {}{}{}{}\n", printable(material.name),
-                       kind_name(material.look.kind), has_pictures ? ", textures" : "",
+                       kind_name(material.look.kind), material.has_pictures() ? ", textures" : "",
                        material.look.is_emissive() ? ", glows" : "",
                        material.alpha_cutoff > 0.0f ? ", cut out" : "");
 }

@@ -90,17 +90,18 @@ SurfaceLook Placing::look() const
     look.textures.alpha_cutoff = material.alpha_cutoff;
     look.textures.normal_strength = material.normal_strength;
     if (mesh()->mesh().uvs.empty()) return look;  // load_gltf has warned
-    const auto get = [&](int image, TextureRole role) {
-        if (image < 0) return std::shared_ptr<const Texture>();
-        const GltfImage& picture = file.scene.images[static_cast<size_t>(image)];
+    const auto get = [&](const GltfPicture& use, TextureRole role) {
+        if (use.image < 0) return std::shared_ptr<const Texture>();
+        const GltfImage& picture = file.scene.images[static_cast<size_t>(use.image)];
         const std::string version = picture.bytes.empty()
                                         ? file_version(picture.path)
-                                        : fmt::format("{} image {}", file.version, image);
-        return context.cache.textures.get({picture.path, picture.bytes}, version, role);
+                                        : fmt::format("{} image {}", file.version, use.image);
+        return context.cache.textures.get({picture.path, picture.bytes}, version, role,
+                                          use.sampler);
     };
-    const auto named = [&](int image, TextureRole role) {
+    const auto named = [&](const GltfPicture& use, TextureRole role) {
         try {
-            return get(image, role);
+            return get(use, role);
         } catch (const Error& error) {
             throw Error(error.code(), fmt::format("{}: material \"{}\": {}", printable(file.path),
                                                   printable(material.name), error.what()));

@@ -1,5 +1,6 @@
 #include "scene/texture_cache.h"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "core/text.h"
@@ -26,25 +27,31 @@ void finish(std::vector<float>& values, bool is_srgb, const std::string& path)
     }
 }
 
-std::shared_ptr<const Texture> make_texture(const ImageSource& source, TextureRole role)
+std::shared_ptr<const Texture> make_texture(const ImageSource& source, TextureRole role,
+                                            const TextureSampler& sampler)
 {
     StoredImage image = read_stored_image(source);
     const bool is_srgb = role == TextureRole::Color && stores_srgb(source);
     if (!image.bytes.empty()) {
         return std::make_shared<const Texture>(image.width, image.height, std::move(image.bytes),
-                                               is_srgb);
+                                               is_srgb, sampler);
     }
     finish(image.floats, is_srgb, source.path);
-    return std::make_shared<const Texture>(image.width, image.height, std::move(image.floats));
+    return std::make_shared<const Texture>(image.width, image.height, std::move(image.floats),
+                                           sampler);
 }
 
 }  // namespace
 
 std::shared_ptr<const Texture> TextureCache::get(const ImageSource& source,
-                                                 const std::string& version, TextureRole role)
+                                                 const std::string& version, TextureRole role,
+                                                 const TextureSampler& sampler)
 {
-    auto& texture = held_[version + (role == TextureRole::Color ? " color" : " data")];
-    if (!texture) texture = make_texture(source, role);
+    const std::string key =
+        fmt::format("{} {} {} {} {}", version, role == TextureRole::Color ? "color" : "data",
+                    static_cast<int>(sampler.u), static_cast<int>(sampler.v), sampler.is_nearest);
+    auto& texture = held_[key];
+    if (!texture) texture = make_texture(source, role, sampler);
     return texture;
 }
 

@@ -21,7 +21,8 @@ class TextureCache {
     /// The texture of an image under `version`, a text that says everything it depends on; read if
     /// it is not held. Throws Error(Input) naming the file.
     [[nodiscard]] std::shared_ptr<const Texture> get(const ImageSource& source,
-                                                     const std::string& version, TextureRole role);
+                                                     const std::string& version, TextureRole role,
+                                                     const TextureSampler& sampler = {});
 
     /// Drops the textures that nobody uses any more.
     void drop_unused();

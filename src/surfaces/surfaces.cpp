@@ -24,6 +24,9 @@ struct ObjectTriangle {
         e1 = Vec3d(mesh.positions[t.y]) - a;
         e2 = Vec3d(mesh.positions[t.z]) - a;
     }
+
+    /// The point of which the corners have these weights, which sum to 1.
+    [[nodiscard]] Vec3d at(Vec3d corners) const { return a + corners.y * e1 + corners.z * e2; }
 };
 
 constexpr double ulp = 0x1p-23;  // of a float in [1, 2)
@@ -47,6 +50,27 @@ float offset_bound(const InstanceFrame& frame, const ObjectTriangle& triangle, V
         4.0 * ulp * glm::dot(moved, glm::abs(n_object)) + 2.0 * ulp * extent * (1.0 + sliver);
     const double in_world = 2.0 * ulp * glm::dot(glm::abs(p), glm::abs(n));
     return static_cast<float>(in_object * world_shift + in_world);
+}
+
+/// Distance from the triangle's edges [offsets] that its points keep. Where two walls meet, a point
+/// nearer to the edge than rounding errors may lie behind the other wall, and see out of a closed
+/// room from there. More than 1, as other walls have offsets of their own and may lean.
+constexpr double edge_distance = 4.0;
+/// But no weight of a corner grows to more than this.
+constexpr double most_inset = 0.1;
+
+/// A hit's place in the triangle (weights of its corners), kept `distance` [m] from its edges.
+Vec3d inset(const ObjectTriangle& triangle, const InstanceFrame& frame, Vec3d corners,
+            double distance)
+{
+    const Vec3d e1 = frame.linear * triangle.e1;
+    const Vec3d e2 = frame.linear * triangle.e2;
+    const double area = glm::length(glm::cross(e1, e2));
+    // A weight is the distance from the opposite edge over the height above that edge.
+    const Vec3d edges(glm::length(e2 - e1), glm::length(e2), glm::length(e1));
+    const Vec3d least = glm::min(distance / area * edges, Vec3d(most_inset));
+    const Vec3d kept = glm::max(corners, least);
+    return kept / (kept.x + kept.y + kept.z);
 }
 
 Vec3 shading_normal(const Mesh& mesh, const InstanceFrame& frame, const SurfaceHit& hit, Vec3 ng)
@@ -132,13 +156,15 @@ SurfaceVertex make_vertex(const Surfaces& surfaces, const SurfaceHit& hit, float
     const Vec3d scaled = n_object * frame.inverse;  // by the inverse's transpose
     const double stretch = glm::length(scaled);
     const Vec3d n = scaled / stretch;
-    const Vec3d p = frame.point(triangle.a + static_cast<double>(hit.u) * triangle.e1 +
-                                static_cast<double>(hit.v) * triangle.e2);
+    const Vec3d corners(1.0 - static_cast<double>(hit.u) - static_cast<double>(hit.v), hit.u,
+                        hit.v);
     SurfaceVertex vertex;
-    vertex.p = Vec3(p);
+    vertex.offset = offset_bound(frame, triangle, frame.point(triangle.at(corners)), n_object, n,
+                                 1.0 / stretch);
+    const double distance = edge_distance * static_cast<double>(vertex.offset);
+    vertex.p = Vec3(frame.point(triangle.at(inset(triangle, frame, corners, distance))));
     vertex.ng = Vec3(n);
     vertex.ns = shading_normal(mesh, frame, hit, vertex.ng);
-    vertex.offset = offset_bound(frame, triangle, p, n_object, n, 1.0 / stretch);
     vertex.material = surfaces.material(hit.object);
     const MaterialTextures* textures = surfaces.textures_of(hit.object);
     if (textures && !mesh.uvs.empty()) {

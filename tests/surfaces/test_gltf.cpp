@@ -78,7 +78,8 @@ TEST(Gltf, Materials)
     text.json["images"] = {
         {{"uri", "skin%20a.png"}},
         {{"uri", "data:image/png;base64," + test::base64(test::text_of(test::rgba_png))}}};
-    text.json["textures"] = {{{"source", 0}}, {{"source", 1}}};
+    text.json["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}, {"magFilter", 9728}}};
+    text.json["textures"] = {{{"source", 0}}, {{"source", 1}, {"sampler", 0}}};
     Json pbr = {{"baseColorFactor", {0.5, 0.25, 1, 0.75}},
                 {"metallicFactor", 0.5},
                 {"roughnessFactor", 0.25},
@@ -112,10 +113,12 @@ TEST(Gltf, Materials)
     EXPECT_EQ(m.opacity, 0.75f);
     EXPECT_EQ(m.alpha_cutoff, 0.3f);
     EXPECT_EQ(m.normal_strength, 2.0f);
-    EXPECT_EQ(m.color, 1);
-    EXPECT_EQ(m.metallic_roughness, 0);
-    EXPECT_EQ(m.normal, 0);
-    EXPECT_EQ(m.emission, 1);
+    EXPECT_EQ(m.color.image, 1);
+    EXPECT_EQ(m.color.sampler, (TextureSampler{TextureWrap::Clamp, TextureWrap::Mirror, true}));
+    EXPECT_EQ(m.metallic_roughness.image, 0);
+    EXPECT_EQ(m.metallic_roughness.sampler, TextureSampler{});
+    EXPECT_EQ(m.normal.image, 0);
+    EXPECT_EQ(m.emission.image, 1);
     EXPECT_EQ(scene.materials[1].look.kind, MaterialKind::Dielectric);
     EXPECT_EQ(scene.materials[1].look.ior, 1.33f);
     EXPECT_EQ(scene.materials[1].look.roughness, 0.0f);

@@ -73,6 +73,33 @@ TEST(Intersect, NothingLeaksFromClosedMeshesAtAnyScale)
     }
 }
 
+/// Hits within a few floats of where two walls meet: the rays that leave from there stay in.
+TEST(Intersect, NothingLeaksAtTheEdgesOfClosedMeshes)
+{
+    for (const double shift : {0.0, 10.0}) {
+        const Vec3d away = shift * Vec3d(1.0, 0.7, -0.4);
+        const Trs trs = placed(1.0, away, true);
+        const Surfaces surfaces = make_surfaces(test::box_mesh(Vec3(-1.0f), Vec3(1.0f), true), trs);
+        const InstanceFrame frame = surfaces.bvh->frame_at(0, 0.0f);
+        Rng rng(1, 0, Stream::Test, 0, 0);
+        int leaks = 0;
+        for (int i = 0; i < 20'000; ++i) {
+            const double aside = 2e-6 * (rng.uniform() - 0.5);
+            const Vec3d at_edge = frame.point({1.0 + aside, 1.0, 2.0 * rng.uniform() - 1.0});
+            const Ray to_edge{Vec3(away), Vec3(glm::normalize(at_edge - away)), 0.0f};
+            const auto hit = intersect(surfaces, to_edge, {0.0f, infinity});
+            if (!hit) continue;  // between two walls; nothing starts there
+            const SurfaceVertex vertex = make_vertex(surfaces, *hit, 0.0f);
+            const Vec3 d = sample_sphere(rng.uniform2());
+            const Vec3 inwards =
+                glm::dot(d, vertex.ng) * glm::dot(to_edge.d, vertex.ng) > 0.0f ? -d : d;
+            const Ray away_from_edge{ray_origin(vertex, inwards), inwards, 0.0f};
+            if (!intersect(surfaces, away_from_edge, {0.0f, infinity})) ++leaks;
+        }
+        EXPECT_EQ(leaks, 0) << shift;
+    }
+}
+
 TEST(Intersect, OffsetsAreNeededAndSmall)
 {
     // Negative control: without them, or with a hundredth, rays slip through or meet their start.

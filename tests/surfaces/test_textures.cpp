@@ -39,6 +39,49 @@ TEST(Texture, CentresOfTexelsBilinearBetweenAndRepeated)
     }
 }
 
+/// A row of three texels, 0, 1 and 4, along u or v: what lies beyond its edges.
+TEST(Texture, ClampsMirrorsAndTakesTheNearest)
+{
+    const std::vector<float> row{0.0f, 0.0f, 0.0f, 1.0f, 1.0f, 1.0f,
+                                 1.0f, 1.0f, 4.0f, 4.0f, 4.0f, 1.0f};
+    for (const bool is_v : {false, true}) {
+        const auto at = [&](TextureWrap wrap, bool is_nearest, float coordinate) {
+            const TextureSampler sampler =
+                is_v ? TextureSampler{TextureWrap::Repeat, wrap, is_nearest}
+                     : TextureSampler{wrap, TextureWrap::Repeat, is_nearest};
+            const Texture texture(is_v ? 1 : 3, is_v ? 3 : 1, row, sampler);
+            // Rows come from the top, v runs upwards.
+            return texture.at(is_v ? Vec2(0.3f, 1.0f - coordinate) : Vec2(coordinate, 0.3f)).x;
+        };
+        const auto repeated = [&](float x) { return at(TextureWrap::Repeat, false, x); };
+        const auto clamped = [&](float x) { return at(TextureWrap::Clamp, false, x); };
+        const auto mirrored = [&](float x) { return at(TextureWrap::Mirror, false, x); };
+        EXPECT_NEAR(repeated(1.0f), 2.0f, 1e-5f);
+        EXPECT_NEAR(clamped(1.0f), 4.0f, 1e-5f);
+        EXPECT_NEAR(clamped(1.4f), 4.0f, 1e-5f);
+        EXPECT_NEAR(clamped(-7.0f), 0.0f, 1e-5f);
+        EXPECT_NEAR(clamped(2.0f / 3.0f), 2.5f, 1e-5f);
+        EXPECT_NEAR(mirrored(1.0f), 4.0f, 1e-5f);
+        for (const float x : {0.1f, 0.4f, 0.55f, 0.9f}) {
+            EXPECT_NEAR(clamped(x), mirrored(x), 1e-5f) << x;
+            EXPECT_NEAR(mirrored(-x), mirrored(x), 1e-5f) << x;
+            EXPECT_NEAR(mirrored(2.0f - x), mirrored(x), 1e-5f) << x;
+            EXPECT_NEAR(mirrored(x + 6.0f), mirrored(x), 1e-5f) << x;
+        }
+        EXPECT_EQ(at(TextureWrap::Repeat, true, 0.3f), 0.0f);
+        EXPECT_EQ(at(TextureWrap::Repeat, true, 0.4f), 1.0f);
+        EXPECT_EQ(at(TextureWrap::Repeat, true, 1.1f), 0.0f);
+        EXPECT_EQ(at(TextureWrap::Clamp, true, 1.1f), 4.0f);
+        EXPECT_EQ(at(TextureWrap::Mirror, true, 1.1f), 4.0f);
+        for (const TextureWrap wrap : {TextureWrap::Clamp, TextureWrap::Mirror}) {
+            for (const float far : {1e30f, -1e30f, 1e-38f, -1e-38f, 0x1p24f}) {
+                const float value = at(wrap, far > 0.0f, far);
+                EXPECT_TRUE(value >= 0.0f && value <= 4.0f) << far;
+            }
+        }
+    }
+}
+
 TEST(Texture, SrgbIsDecodedBeforeItIsMixedAndAlphaNever)
 {
     const Texture grey(2, 1, std::vector<uint8_t>{0, 0, 0, 102, 188, 188, 188, 102}, true);

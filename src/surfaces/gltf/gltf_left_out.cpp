@@ -25,31 +25,12 @@ bool has_colors(const tinygltf::Model& model)
     return false;
 }
 
-/// All pictures are repeated without end and interpolated.
-bool wraps_otherwise(const tinygltf::Sampler& sampler)
-{
-    return sampler.wrapS != TINYGLTF_TEXTURE_WRAP_REPEAT ||
-           sampler.wrapT != TINYGLTF_TEXTURE_WRAP_REPEAT;
-}
-
-bool is_unfiltered(const tinygltf::Sampler& sampler)
-{
-    return sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
-}
-
 }  // namespace
 
 std::vector<std::string> left_out(const tinygltf::Model& model)
 {
     std::vector<std::string> out;
     if (has_colors(model)) out.emplace_back("vertex colours (COLOR_0)");
-    const auto& samplers = model.samplers;
-    if (std::any_of(samplers.begin(), samplers.end(), wraps_otherwise)) {
-        out.emplace_back("samplers that clamp or mirror (pictures repeat)");
-    }
-    if (std::any_of(samplers.begin(), samplers.end(), is_unfiltered)) {
-        out.emplace_back("samplers without filter (pictures are interpolated)");
-    }
     for (const std::string& name : model.extensionsUsed) {
         const bool is_shown = std::find(shown_extensions.begin(), shown_extensions.end(), name) !=
                               shown_extensions.end();

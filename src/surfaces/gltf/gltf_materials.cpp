@@ -62,6 +62,20 @@ glm::mat3 texture_transform(const tinygltf::ExtensionMap& extensions)
             Vec3(offset, 1.0f)};
 }
 
+TextureWrap wrap_of(int mode)
+{
+    if (mode == TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE) return TextureWrap::Clamp;
+    if (mode == TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT) return TextureWrap::Mirror;
+    return TextureWrap::Repeat;
+}
+
+/// Of filters that for magnification counts; there are no smaller copies of pictures.
+TextureSampler sampler_of(const tinygltf::Sampler& from)
+{
+    return {wrap_of(from.wrapS), wrap_of(from.wrapT),
+            from.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST};
+}
+
 /// A file's material under conversion.
 struct Converter {
     const GltfSource& source;
@@ -69,11 +83,11 @@ struct Converter {
     GltfUvChoice& uv;
     bool has_uv = false;
 
-    /// The picture of a slot, -1: none; notes what coordinates it uses.
+    /// The picture of a slot; notes what coordinates it uses.
     template <class Info>
-    int picture(const Info& info, const char* slot)
+    GltfPicture picture(const Info& info, const char* slot)
     {
-        if (info.index < 0) return -1;
+        if (info.index < 0) return {};
         const tinygltf::Texture& texture = source.at(source.model.textures, info.index, "texture");
         GltfUvChoice own{info.texCoord, texture_transform(info.extensions)};
         const Value* other_set = member(info.extensions, "KHR_texture_transform", "texCoord");
@@ -91,7 +105,9 @@ struct Converter {
                 "texture {} has no picture that mote reads; save it as PNG or JPEG", info.index));
         }
         (void)source.at(source.model.images, texture.source, "image");
-        return texture.source;
+        if (texture.sampler < 0) return {texture.source, {}};
+        return {texture.source,
+                sampler_of(source.at(source.model.samplers, texture.sampler, "sampler"))};
     }
 
     void convert(const tinygltf::Material& from);

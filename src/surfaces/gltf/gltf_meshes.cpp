@@ -108,12 +108,6 @@ void check_size(const GltfSource& source, const GltfScene& scene)
     }
 }
 
-bool has_pictures(const GltfMaterial& material)
-{
-    return std::max({material.color, material.metallic_roughness, material.normal,
-                     material.emission}) >= 0;
-}
-
 }  // namespace
 
 std::vector<int> convert_mesh(const GltfSource& source, int index,
@@ -146,7 +140,7 @@ std::vector<int> convert_mesh(const GltfSource& source, int index,
             continue;
         }
         if (part.mesh.uvs.empty() &&
-            has_pictures(out.materials[static_cast<size_t>(part.material)])) {
+            out.materials[static_cast<size_t>(part.material)].has_pictures()) {
             spdlog::warn("{} has no texture coordinates; shown without pictures", place);
         }
         parts.push_back(static_cast<int>(out.parts.size()));

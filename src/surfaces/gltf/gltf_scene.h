@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -9,6 +10,7 @@
 #include "core/transform.h"
 #include "surfaces/material.h"
 #include "surfaces/mesh.h"
+#include "surfaces/texture.h"
 
 namespace mote {
 
@@ -18,14 +20,25 @@ struct GltfImage {
     std::vector<uint8_t> bytes;  ///< of pictures inside
 };
 
-/// A material with the numbers of its pictures, -1: none. See MaterialTextures for what they do.
+/// Use of a picture.
+struct GltfPicture {
+    int image = -1;  ///< into GltfScene::images; -1: none
+    TextureSampler sampler;
+};
+
+/// A material and its pictures. See MaterialTextures for what they do.
 struct GltfMaterial {
     std::string name;
     Material look;
-    int color = -1, metallic_roughness = -1, normal = -1, emission = -1;
+    GltfPicture color, metallic_roughness, normal, emission;
     float normal_strength = 1.0f;
     float opacity = 1.0f;
     float alpha_cutoff = 0.0f;
+
+    [[nodiscard]] bool has_pictures() const
+    {
+        return std::max({color.image, metallic_roughness.image, normal.image, emission.image}) >= 0;
+    }
 };
 
 /// Triangles of one material, finished. Texture coordinates have v upwards.
