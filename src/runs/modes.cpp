@@ -93,10 +93,11 @@ bool is_animated(const SceneDescription& scene)
             return v.transform.size() > 1 || is_sequence(v.file) ||
                    (v.procedural && v.procedural->evolve != 0.0f);
         });
-    const bool lights_move =
-        std::any_of(scene.lights.begin(), scene.lights.end(),
-                    [](const LightDescription& light) { return light.transform.size() > 1; });
-    return objects_move || volumes_move || lights_move;
+    const bool lights_change =
+        std::any_of(scene.lights.begin(), scene.lights.end(), [](const LightDescription& light) {
+            return light.transform.size() > 1 || light.keys.size() > 1;
+        });
+    return objects_move || volumes_move || lights_change;
 }
 
 std::vector<BenchMode> choose_modes(const std::string& list, const SceneDescription& scene)

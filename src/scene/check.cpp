@@ -65,6 +65,17 @@ struct Checker {
         }
     }
 
+    template <class Key>
+    void check_ascending(const char* list, size_t i, const std::vector<Key>& keys)
+    {
+        for (size_t k = 1; k < keys.size(); ++k) {
+            if (keys[k].frame > keys[k - 1].frame) continue;
+            report({list, std::to_string(i), "keys", std::to_string(k), "frame"},
+                   "keyframes of \"keys\" in [{}] must ascend: {} after {}", list, keys[k].frame,
+                   keys[k - 1].frame);
+        }
+    }
+
     void check_transforms(const char* list, size_t i, const std::vector<TransformKey>& keys)
     {
         const std::string index = std::to_string(i);
@@ -242,6 +253,7 @@ void Checker::check_lights()
             report({"lights", index, "spread"}, "\"spread\" in [lights] must not be negative");
         }
         if (light.kind == LightKind::Sphere) check_particle_lights(i);
+        check_ascending("lights", i, light.keys);
         check_transforms("lights", i, light.transform);
     }
 }
@@ -321,6 +333,13 @@ void check_scene(const SceneDescription& scene, const Node& root, Problems& prob
     if (pixels > (int64_t{1} << 28)) {
         checker.report({"render", "width"}, "{} x {} pixels are more than 2^28", scene.render.width,
                        scene.render.height);
+    }
+    const RestirParams& restir = scene.render.restir;
+    if (restir.surface.shading == SurfaceShading::All &&
+        surface_mis(restir) == ReuseMis::Contribution) {
+        checker.report({"render", "restir", "surface", "shading"},
+                       "\"shading\" = \"all\" needs weights for every sample, which \"mis\" = "
+                       "\"contribution\" has not; choose another \"mis\", or \"chosen\"");
     }
     if (scene.output.path.empty()) {
         checker.report({"output", "path"}, "\"path\" in [output] is empty");

@@ -102,6 +102,13 @@ struct ParticlesDescription {
 enum class LightKind { Point, Spot, Distant, Sphere, Quad, Environment };
 
 /// A light, or a swarm of them. Positions are in the light's object space; `transform` moves it.
+/// How bright a light is at a frame.
+struct LightKey {
+    double frame = 0.0;
+    std::optional<double> strength;
+    std::optional<Vec3d> color;
+};
+
 struct LightDescription {
     std::string name;
     LightKind kind = LightKind::Point;
@@ -122,6 +129,7 @@ struct LightDescription {
     float radius_scale = 1.0f;     ///< of these, over the particles' radii
     bool use_color = false;        ///< their radiance is multiplied by the particles' colours,
     bool use_temperature = false;  ///< by (T/1500 K)^4 blackbody_rgb(T)
+    std::vector<LightKey> keys;    ///< of strength and colour
     std::vector<TransformKey> transform;
 };
 

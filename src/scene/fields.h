@@ -121,6 +121,7 @@ void describe(FieldVisitor& visitor, Phase& phase);
 void describe(FieldVisitor& visitor, Emission& emission);
 void describe(FieldVisitor& visitor, ParticlesDescription& particles);
 void describe(FieldVisitor& visitor, LightDescription& light);
+void describe(FieldVisitor& visitor, LightKey& key);
 void describe(FieldVisitor& visitor, MaterialDescription& material);
 void describe(FieldVisitor& visitor, ObjectDescription& object);
 void describe(FieldVisitor& visitor, TransformKey& key);

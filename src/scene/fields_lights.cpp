@@ -128,7 +128,25 @@ void describe(FieldVisitor& v, LightDescription& light)
                   "T's hue",
            .used_by = "sphere"},
           light.use_temperature);
+    visit_list(v,
+               {.key = "keys",
+                .doc = "Keyframes of its brightness, ascending; each value runs linearly between "
+                       "the keys that give it and replaces the one above",
+                .also = "keyframes animation"},
+               light.keys);
     visit_transform(v, light.transform);
+}
+
+void describe(FieldVisitor& v, LightKey& key)
+{
+    visit(v,
+          {.key = "frame", .doc = "When", .unit = "frames", .range = frame_range, .required = true},
+          key.frame);
+    visit_optional(v, {.key = "strength", .doc = "As in [[lights]]", .range = between(0, 1e20)},
+                   key.strength);
+    visit_optional(
+        v, {.key = "color", .doc = "As in [[lights]]", .range = between(0, 1e6), .scalar_ok = true},
+        key.color);
 }
 
 void describe(FieldVisitor& v, TransformKey& key)

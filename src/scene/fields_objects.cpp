@@ -78,13 +78,16 @@ void describe(FieldVisitor& v, MaterialDescription& material)
            .also = "metalness",
            .used_by = "metallic_roughness"},
           look.metallic);
-    visit(v,
-          {.key = "roughness",
-           .doc = "0: as good as smooth, 1: very rough",
-           .range = between(0, 1),
-           .also = "alpha glossiness",
-           .used_by = "metallic_roughness dielectric"},
-          look.roughness);
+    visit(
+        v,
+        {.key = "roughness",
+         .doc = "0: as good as smooth, 1: very rough. Light that meets the rough surface's facets "
+                "twice is lost, as in glTF's model: with roughness 1 up to 70 % of a metal's and "
+                "a third of glass's",
+         .range = between(0, 1),
+         .also = "alpha glossiness",
+         .used_by = "metallic_roughness dielectric"},
+        look.roughness);
     visit(v,
           {.key = "ior",
            .doc = "Index of refraction, inside over outside",

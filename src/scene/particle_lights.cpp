@@ -8,6 +8,7 @@
 #include "core/error.h"
 #include "particles/source.h"
 #include "scene/particle_system.h"
+#include "scene/prepare_lights.h"
 #include "volumes/blackbody.h"
 
 namespace mote {
@@ -51,9 +52,10 @@ void add_lamps(const ParticleSet& set, const LightDescription& light, double fra
     const Trs trs = evaluate(light.transform, frame);
     const Affine world_from_object = to_affine(matrix(trs));
     const Vec3 scale = glm::abs(Vec3(trs.scale));
+    const Spectrum brightness = brightness_at(light, frame);
     const float radius_scale = light.radius_scale * (scale.x + scale.y + scale.z) / 3.0f;
     for (size_t i = 0; i < set.size(); ++i) {
-        Spectrum radiance = light.strength * light.color;
+        Spectrum radiance = brightness;
         if (light.use_color) radiance *= set.color[i];
         if (light.use_temperature) radiance *= glow(set.temperature[i]);
         const float radius = radius_scale * set.radius[i];
@@ -69,8 +71,8 @@ void add_particle_lights(const SceneDescription& description, double frame, Prep
                          std::vector<Light>& lights)
 {
     for (const LightDescription& light : description.lights) {
-        const bool is_black = light.strength * max_component(light.color) <= 0.0f;
-        if (light.particles.empty() || is_black) continue;
+        if (light.particles.empty()) continue;
+        if (!(max_component(brightness_at(light, frame)) > 0.0f)) continue;
         const auto start = std::chrono::steady_clock::now();
         const ParticlesDescription& system = find_system(description, light.particles);
         const ParticleSet set = particles_of(description, light, system, frame);

@@ -212,8 +212,9 @@ void Preparation::add_environment(Scene& scene) const
     for (const LightDescription& light : description.lights) {
         if (light.kind != LightKind::Environment) continue;
         EnvironmentLight environment;
-        environment.radiance = light.strength * light.color;
-        environment.map_from_world = map_from_world(light, 0.5 * (open() + close()));
+        const double middle = 0.5 * (open() + close());
+        environment.radiance = brightness_at(light, middle);
+        environment.map_from_world = map_from_world(light, middle);
         if (!light.image.empty()) {
             const std::string path = (fs::path(description.base_dir) / light.image).string();
             std::shared_ptr<const EnvironmentMap>& map = cache.environments[file_version(path)];

@@ -3,28 +3,10 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
+#include "scene/evaluate_key.h"
 
 namespace mote {
 namespace {
-
-/// One value of the camera at a frame: linear between the keys that give it, held outside them.
-template <class T>
-T evaluate_key(const std::vector<CameraKey>& keys, std::optional<T> CameraKey::*member,
-               const T& without_keys, double frame)
-{
-    const CameraKey* before = nullptr;
-    const CameraKey* after = nullptr;
-    for (const CameraKey& key : keys) {
-        if (!(key.*member)) continue;
-        if (key.frame <= frame) before = &key;
-        if (key.frame > frame && !after) after = &key;
-    }
-    if (!before && !after) return without_keys;
-    if (!before) return *(after->*member);
-    if (!after) return *(before->*member);
-    const double u = (frame - before->frame) / (after->frame - before->frame);
-    return *(before->*member) * (1.0 - u) + *(after->*member) * u;
-}
 
 struct CameraState {
     Trs world_from_camera;

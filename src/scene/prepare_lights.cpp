@@ -1,6 +1,7 @@
 #include "scene/prepare_lights.h"
 
 #include "core/rng.h"
+#include "scene/evaluate_key.h"
 
 namespace mote {
 namespace {
@@ -13,10 +14,9 @@ Vec3 scattered_position(const LightDescription& light, int copy)
     return light.position + light.spread * (rng.uniform3() - Vec3(0.5f));
 }
 
-Light make_light(const LightDescription& light, const Trs& trs, int copy)
+Light make_light(const LightDescription& light, const Trs& trs, Spectrum strength, int copy)
 {
     const Affine world_from_object = to_affine(matrix(trs));
-    const Spectrum strength = light.strength * light.color;
     const Vec3 position = world_from_object.point(scattered_position(light, copy));
     switch (light.kind) {
         case LightKind::Distant: {
@@ -46,18 +46,35 @@ Light make_light(const LightDescription& light, const Trs& trs, int copy)
 
 }  // namespace
 
+Spectrum brightness_at(const LightDescription& light, double frame)
+{
+    const double strength =
+        evaluate_key(light.keys, &LightKey::strength, static_cast<double>(light.strength), frame);
+    const Vec3d color = evaluate_key(light.keys, &LightKey::color, Vec3d(light.color), frame);
+    return static_cast<float>(strength) * Spectrum(color);
+}
+
+void scale_brightness(LightDescription& light, float factor)
+{
+    light.strength *= factor;
+    for (LightKey& key : light.keys) {
+        if (key.strength) *key.strength *= static_cast<double>(factor);
+    }
+}
+
 std::vector<Light> make_lights(const std::vector<LightDescription>& descriptions, double frame)
 {
     std::vector<Light> lights;
     for (const LightDescription& light : descriptions) {
-        const bool is_black = light.strength * max_component(light.color) <= 0.0f;
-        if (light.kind == LightKind::Environment || is_black) continue;
-        if (!light.particles.empty()) continue;
+        if (light.kind == LightKind::Environment || !light.particles.empty()) continue;
+        const Spectrum strength = brightness_at(light, frame);
+        const bool keeps_place = light.kind != LightKind::Distant && !light.keys.empty();
+        if (!(max_component(strength) > 0.0f) && !keeps_place) continue;
         const Trs trs = evaluate(light.transform, frame);
         const bool is_swarm = light.kind == LightKind::Point || light.kind == LightKind::Spot ||
                               light.kind == LightKind::Sphere;
         const int copies = is_swarm ? light.count : 1;
-        for (int i = 0; i < copies; ++i) lights.push_back(make_light(light, trs, i));
+        for (int i = 0; i < copies; ++i) lights.push_back(make_light(light, trs, strength, i));
     }
     return lights;
 }

@@ -7,6 +7,7 @@
 #include "image/color_of.h"
 #include "runs/play_frames.h"
 #include "runs/run_error.h"
+#include "scene/prepare_lights.h"
 
 namespace mote {
 
@@ -56,7 +57,7 @@ std::vector<Sequence> make_sequences(const TemporalInputs& inputs)
     sequences.push_back(make_sequence("rest", still, still, inputs));
     if (!inputs.scene.lights.empty()) {
         SceneDescription dim = inputs.scene;
-        for (LightDescription& light : dim.lights) light.strength *= before_step;
+        for (LightDescription& light : dim.lights) scale_brightness(light, before_step);
         sequences.push_back(
             make_sequence("light", prepare_at(dim, inputs.frame, cache), still, inputs));
     }

@@ -177,6 +177,9 @@ TEST(Modes, FollowWhatMovesOfObjects)
     EXPECT_TRUE(moves(object("file = \"moving.gltf\"")));
     EXPECT_FALSE(moves("[camera]\nfile = \"still.gltf\"\n"));
     EXPECT_TRUE(moves("[camera]\nfile = \"moving.gltf\"\n"));
+    const std::string lamp = "[[lights]]\ntype = \"point\"\n";
+    EXPECT_FALSE(moves(lamp + "keys = [{ frame = 1, strength = 0 }]\n"));
+    EXPECT_TRUE(moves(lamp + "keys = [{ frame = 1, strength = 0 }, { frame = 2 }]\n"));
 }
 
 TEST(Modes, AllShowTheSameFrameLast)

@@ -204,6 +204,35 @@ transform = { rotate = [0, 90, 0] }
     EXPECT_NEAR(glm::length(seen - Vec3(0.0f, 0.0f, 1.0f)), 0.0f, 1e-6f);
 }
 
+/// A lamp that is switched off keeps its place; brightness runs linearly between keys.
+TEST(Prepare, LightsFollowTheirKeys)
+{
+    const SceneDescription scene = load_text(R"(
+[[lights]]
+type = "sphere"
+strength = 7
+color = [1, 0.5, 0]
+keys = [{ frame = 1, strength = 8 }, { frame = 3, strength = 4 }, { frame = 4, strength = 0 }]
+[[lights]]
+type = "distant"
+keys = [{ frame = 1, color = 0 }, { frame = 2, color = [1, 0, 0.5] }]
+[[lights]]
+type = "environment"
+strength = 2
+keys = [{ frame = 5, strength = 3 }]
+)");
+    const Scene second = prepare(scene, 2);
+    ASSERT_EQ(second.lights.size(), 2u);
+    EXPECT_EQ(std::get<SphereLight>(second.lights[0]).radiance, Spectrum(6.0f, 3.0f, 0.0f));
+    EXPECT_EQ(std::get<DistantLight>(second.lights[1]).irradiance, Spectrum(1.0f, 0.0f, 0.5f));
+    EXPECT_EQ(second.environment->radiance, Spectrum(3.0f));
+    const Scene first = prepare(scene, 1);
+    ASSERT_EQ(first.lights.size(), 1u) << "the sun is not up yet";
+    const Scene last = prepare(scene, 9);
+    ASSERT_EQ(last.lights.size(), 2u);
+    EXPECT_EQ(std::get<SphereLight>(last.lights[0]).radiance, Spectrum(0.0f));
+}
+
 /// Three particles of a file; the second is cold.
 struct ParticleLamps {
     TemporaryFolder folder;

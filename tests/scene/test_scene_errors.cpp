@@ -104,6 +104,11 @@ TEST(SceneErrors, NamePlaceKeyAndRemedy)
          "scene.toml:3:23: error: \"scale\" in [volumes.transform] must not be 0"},
         {"[camera]\nkeys = [{ frame = 5 }, { frame = 1 }]",
          "scene.toml:2:34: error: keyframes of the camera must ascend: 1 after 5"},
+        {"[[lights]]\ntype = \"point\"\nkeys = [{ frame = 2 }, { frame = 2 }]",
+         "scene.toml:3:34: error: keyframes of \"keys\" in [lights] must ascend: 2 after 2"},
+        {"[render.restir.surface]\nmis = \"contribution\"\nshading = \"all\"",
+         "scene.toml:3:11: error: \"shading\" = \"all\" needs weights for every sample, which "
+         "\"mis\" = \"contribution\" has not; choose another \"mis\", or \"chosen\""},
         {"[camera]\nshutter_open = 0.5\nshutter_close = 0",
          "scene.toml:3:17: error: \"shutter_close\" is before \"shutter_open\""},
         {"[camera]\nlook_at = [0, 0, 5]",
