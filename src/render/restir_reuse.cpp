@@ -263,7 +263,7 @@ void ReusingFrame::pass_over_surfaces(const ReusePlan& plan, uint32_t pass,
         std::swap(surfaces.current, surfaces.next);
     }
     if (frame.params.surface.feedback) keep();
-    if (frame.params.surface.visibility == SurfaceVisibility::None) {
+    if (frame.params.surface.visibility == SurfaceVisibility::None && !shades_all(frame.params)) {
         for_tiles([&](const Tile& tile, PassCounts& n) {
             shade_surface_reservoirs(frame, tile, now.surfaces, surfaces, n);
         });

@@ -94,7 +94,7 @@ void fill_surface_reservoirs(const PassInputs& inputs, const Tile& tile, uint32_
             own = choice.kept.front();
             if (!(own.r.W > 0.0f)) continue;
             const Candidate c = evaluate(frame, domain, own.r.y);
-            if (visibility == SurfaceVisibility::None) {
+            if (visibility == SurfaceVisibility::None && !shades_all(frame.params)) {
                 set_light(own, visibility, c.f, 1.0f);
                 continue;
             }

@@ -38,8 +38,8 @@ struct SurfaceBuffers {
 };
 
 /// The surfaces' own reservoirs of a tile as surface.visibility has them: with exact shadows in
-/// their targets, without (`colors` is not filled then), or with V. Lights that are shaded all go
-/// into `samples`.
+/// their targets, without (`colors` means nothing then, unless all are shaded), or with V. Lights
+/// that are shaded all go into `samples`.
 void fill_surface_reservoirs(const PassInputs& inputs, const Tile& tile, uint32_t pass,
                              const Buffer2D<SurfaceDomain>& domains, SurfaceBuffers& out,
                              Buffer2D<FilmSample>& samples, PassCounts& counts);

@@ -23,6 +23,8 @@ struct CombineRules {
     /// The result's V is the mean over all inputs by their resampling weights (weighted importance
     /// sampling), else that of the chosen sample.
     bool averages_V = false;
+    /// Light is that of all inputs, else that of the chosen sample.
+    bool shades_all = true;
 };
 
 /// A pixel's own reservoir from its candidates: streaming RIS with known * luminance(f) as target.
@@ -70,8 +72,8 @@ class Combination {
 
     /// Result of one pixel. `color` becomes the estimate of its light: all inputs shaded with their
     /// MIS weights, which has the mean of shading the chosen sample and less noise, at no cost (by
-    /// Contribution the chosen sample alone). The result's f is that of the chosen sample. `rng` is
-    /// not asked again for what has been chosen.
+    /// Contribution, and without shades_all, the chosen sample alone). The result's f is that of
+    /// the chosen sample. `rng` is not asked again for what has been chosen.
     [[nodiscard]] PixelReservoir finish(int pixel, Rng& rng, Spectrum& color) const;
 
   private:

@@ -116,7 +116,8 @@ PixelReservoir Combination::finish(int index, Rng& rng, Spectrum& color) const
     const Pixel& pixel = pixels_[static_cast<size_t>(index)];
     if (!chooses_first()) {
         const Choice choice = select(pixel, rng);
-        color = choice.color;
+        const Reservoir& r = choice.out.r;
+        color = rules_.shades_all ? choice.color : (r.V * r.W) * choice.out.f;
         return choice.out;
     }
     const Choice& choice = chosen_[static_cast<size_t>(index)];

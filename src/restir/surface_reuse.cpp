@@ -30,11 +30,14 @@ Vec3 earlier_position(const FrameDomain& before, const FrameDomain& now,
     return Vec3(there.point(here.inverse * (Vec3d(domain.v.p) - here.offset)));
 }
 
-CombineRules with_visibility(CombineRules rules, SurfaceVisibility visibility)
+CombineRules with_surface_rules(CombineRules rules, const RestirParams& params)
 {
+    const SurfaceVisibility visibility = params.surface.visibility;
     const bool is_exact = visibility == SurfaceVisibility::Exact;
     rules.visibility = is_exact ? TargetVisibility::Exact : TargetVisibility::None;
     rules.averages_V = visibility == SurfaceVisibility::Weighted;
+    rules.shades_all = shades_all(params);
+    rules.traces_V = visibility == SurfaceVisibility::None && rules.shades_all;
     return rules;
 }
 
@@ -82,7 +85,7 @@ CombineRules surface_temporal_rules(const RestirParams& params, bool still)
 {
     RestirParams own = params;
     own.mis = surface_mis(params);
-    return with_visibility(temporal_rules(own, still), params.surface.visibility);
+    return with_surface_rules(temporal_rules(own, still), params);
 }
 
 CombineRules surface_spatial_rules(const RestirParams& params)
@@ -90,8 +93,8 @@ CombineRules surface_spatial_rules(const RestirParams& params)
     RestirParams own = params;
     own.mis = surface_mis(params);
     if (own.mis == ReuseMis::Auto) own.mis = ReuseMis::Pairwise;
-    CombineRules rules = with_visibility(temporal_rules(own, false), params.surface.visibility);
-    rules.traces_V = params.surface.visibility == SurfaceVisibility::Weighted;
+    CombineRules rules = with_surface_rules(temporal_rules(own, false), params);
+    rules.traces_V |= params.surface.visibility == SurfaceVisibility::Weighted;
     return rules;
 }
 

@@ -9,6 +9,7 @@ constexpr std::array mis_names = {"auto", "pairwise", "balance", "constant"};
 constexpr std::array surface_mis_names = {"auto", "pairwise", "balance", "constant",
                                           "contribution"};
 constexpr std::array surface_visibility_names = {"exact", "none", "reused", "weighted"};
+constexpr std::array surface_shading_names = {"auto", "chosen", "all"};
 constexpr std::array visibility_names = {"exact", "cached", "none"};
 constexpr std::array indirect_names = {"auto", "paths", "shared"};
 constexpr std::array indirect_reuse_names = {"off", "temporal", "spatial", "both"};
@@ -207,6 +208,15 @@ void describe(FieldVisitor& v, SurfaceRestirParams& surface)
              "neighbour, averaged with what history had: biased in time, colours leak and "
              "moving shadows lag"},
         surface.visibility, surface_visibility_names);
+    visit_choice(
+        v,
+        {.key = "shading",
+         .doc = "Samples that are shaded of those which reuse brings together: the chosen one, or "
+                "all by their weights, which has less noise, of colour above all; auto: all where "
+                "their shadows are known, chosen where `visibility` is none (all takes a ray for "
+                "each there) or `mis` is contribution (which has weights for the chosen one "
+                "only). Unbiased either way"},
+        surface.shading, surface_shading_names);
 }
 
 void describe(FieldVisitor& v, TemporalParams& temporal)

@@ -74,6 +74,14 @@ enum class SurfaceVisibility {
                ///< neighbours alone it is not.
 };
 
+/// Which of the samples that meet in a surface's reservoir are shaded.
+enum class SurfaceShading {
+    Auto,    ///< All where that takes no further ray: not by Contribution, nor by visibility None
+    Chosen,  ///< the one that is chosen: colours of lamps mix from pass to pass only
+    All,     ///< the sum over all of them by their weights, each with its shadow where it is taken
+             ///< to; a ray for each by visibility None. Contribution has no such weights.
+};
+
 /// Sets of parameters by name; keys that a scene gives besides win.
 enum class RestirPreset {
     Default,
@@ -111,6 +119,7 @@ struct SurfaceRestirParams {
     ReuseMis mis = ReuseMis::Auto;  ///< Auto: RestirParams::mis. Balance costs n (n - 1) rays more
                                     ///< where targets know shadows
     SurfaceVisibility visibility = SurfaceVisibility::Exact;
+    SurfaceShading shading = SurfaceShading::Auto;
 };
 
 /// How the volumetric ReSTIR estimator samples. Unbiased unless a field says otherwise.
@@ -197,6 +206,14 @@ struct RestirParams {
 [[nodiscard]] inline ReuseMis surface_mis(const RestirParams& p)
 {
     return p.surface.mis == ReuseMis::Auto ? p.mis : p.surface.mis;
+}
+
+/// Whether surfaces shade all samples that they combine.
+[[nodiscard]] inline bool shades_all(const RestirParams& p)
+{
+    if (surface_mis(p) == ReuseMis::Contribution) return false;
+    if (p.surface.shading != SurfaceShading::Auto) return p.surface.shading == SurfaceShading::All;
+    return p.surface.visibility != SurfaceVisibility::None;
 }
 
 /// Whether surfaces that reuse samples have the right mean. README has the table.

@@ -63,7 +63,8 @@ namespace mote::test {
 /// Where the posts' lamps are and whether they shine.
 struct PostsState {
     float step = 0.0f;  ///< the red lamp and the camera go on
-    bool is_green = true;
+    Spectrum green{3.0f, 30.0f, 3.0f};
+    bool has_blue = true;  ///< else there are two lamps
 };
 
 /// Posts between three small lamps, red, green and blue, and a floor with a wall behind: half of
@@ -74,8 +75,9 @@ inline Scene posts(const PostsState& state = {})
     scene.camera = small_camera({0.5f + 0.15f * state.step, 0.4f, 3.2f});
     scene.lights = {
         SphereLight{{-1.3f + 0.25f * state.step, -0.2f, 1.0f}, 0.06f, {40.0f, 6.0f, 4.0f}},
-        SphereLight{{1.4f, 0.0f, 0.7f}, 0.06f, Spectrum(3.0f, state.is_green ? 30.0f : 3.0f, 3.0f)},
+        SphereLight{{1.4f, 0.0f, 0.7f}, 0.06f, state.green},
         SphereLight{{0.2f, 0.7f, 1.2f}, 0.06f, {3.0f, 5.0f, 50.0f}}};
+    if (!state.has_blue) scene.lights.pop_back();
     std::vector<Thing> things{
         {quad_mesh({-4.0f, -0.8f, -4.0f}, {0.0f, 0.0f, 8.0f}, {8.0f, 0.0f, 0.0f}),
          diffuse(Spectrum(0.7f))},
@@ -94,12 +96,27 @@ inline Scene posts(const PostsState& state = {})
     return still_frames_of(posts(), count);
 }
 
-/// The camera and a lamp move, another is switched on and off.
+/// The camera and a lamp move, another is dimmed and lit again.
 [[nodiscard]] inline std::vector<Scene> moving_posts(int count)
 {
     std::vector<Scene> frames;
     for (int i = 0; i < count; ++i) {
-        frames.push_back(posts({static_cast<float>(i), i % 2 == 1}));
+        const Spectrum green(3.0f, i % 2 == 1 ? 30.0f : 3.0f, 3.0f);
+        frames.push_back(posts({static_cast<float>(i), green}));
+        frames.back().frame = 1 + i;
+    }
+    return frames;
+}
+
+/// Nothing moves, but in turns one lamp is black and another is taken out of the scene: of four
+/// frames the last has a lamp that the one before knew as black, and lacks another.
+[[nodiscard]] inline std::vector<Scene> switched_posts(int count)
+{
+    std::vector<Scene> frames;
+    for (int i = 0; i < count; ++i) {
+        const bool is_odd = i % 2 == 1;
+        frames.push_back(
+            posts({0.0f, is_odd ? Spectrum(3.0f, 30.0f, 3.0f) : Spectrum(0.0f), !is_odd}));
         frames.back().frame = 1 + i;
     }
     return frames;
@@ -110,21 +127,25 @@ struct SurfaceForm {
     ReuseMis mis;
     SurfaceVisibility visibility;
     ReuseMode reuse = ReuseMode::Both;
+    SurfaceShading shading = SurfaceShading::Auto;
 
     [[nodiscard]] std::string name() const
     {
+        constexpr const char* shadings[] = {"", " chosen", " all"};
         constexpr const char* weights[] = {"auto", "pairwise", "balance", "constant",
                                            "contribution"};
         constexpr const char* shadows[] = {"exact", "none", "reused", "weighted"};
-        return fmt::format("{} {}{}", weights[static_cast<size_t>(mis)],
+        return fmt::format("{} {}{}{}", weights[static_cast<size_t>(mis)],
                            shadows[static_cast<size_t>(visibility)],
-                           reuse == ReuseMode::Spatial ? " spatial" : "");
+                           reuse == ReuseMode::Spatial ? " spatial" : "",
+                           shadings[static_cast<size_t>(shading)]);
     }
     [[nodiscard]] RestirParams params() const
     {
         RestirParams p = reuse_params(reuse, ShiftKind::RandomNumbers);
         p.surface.mis = mis;
         p.surface.visibility = visibility;
+        p.surface.shading = shading;
         // Few pixels: neighbours that are not alike must be among those that take part.
         p.surface.radius_px = 3.0f;
         return p;
@@ -137,7 +158,8 @@ inline void PrintTo(const SurfaceForm& form, std::ostream* out)
     *out << form.name();
 }
 
-/// Every form; the reuse of each is Both, and Spatial besides where that makes it unbiased.
+/// Every form; the reuse of each is Both, and Spatial besides where that makes it unbiased. Those
+/// by default shade what `auto` says; two more shade otherwise.
 [[nodiscard]] inline std::vector<SurfaceForm> all_surface_forms()
 {
     std::vector<SurfaceForm> forms;
@@ -152,6 +174,10 @@ inline void PrintTo(const SurfaceForm& form, std::ostream* out)
             forms.push_back({mis, SurfaceVisibility::Weighted, ReuseMode::Spatial});
         }
     }
+    forms.push_back(
+        {ReuseMis::Pairwise, SurfaceVisibility::Exact, ReuseMode::Both, SurfaceShading::Chosen});
+    forms.push_back(
+        {ReuseMis::Pairwise, SurfaceVisibility::None, ReuseMode::Both, SurfaceShading::All});
     return forms;
 }
 
