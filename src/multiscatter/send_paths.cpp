@@ -11,9 +11,6 @@
 namespace mote {
 namespace {
 
-/// Optical depths beyond which floats know no transmittance.
-constexpr float deepest = 104.0f;
-
 /// How one group's paths are sent.
 struct GroupScratch {
     LaneGroup lanes;
@@ -107,17 +104,17 @@ class PathSender {
         eval_kernels(scratch_.lanes, context_.extinction, found.x, normal, kernel);
         hide_shadowed(members, found, kernel);
         const GroupView view = view_of(scratch_.lanes, found.x, kernel);
-        if (!(view.density > 0.0f)) {
+        const float scale = 1.0f / (view.density * static_cast<float>(members.size()));
+        if (!std::isfinite(scale)) {  // out of sight, for floats
             level_.kernels.resize(first);
             return;
         }
         if (found.surface >= 0) {
             light_surface(members, kernel, found);
         } else {
-            aim(view, found);
+            aim_lobe(view, found);
             add_shadow_ray(next_.event(found, context_.time), found);
         }
-        const float scale = 1.0f / (view.density * static_cast<float>(members.size()));
         for (float& k : kernel) k *= scale;
         next_.vertices.push_back(found);
     }
@@ -140,17 +137,6 @@ class PathSender {
             const Ray ray{o, (x - o) / distance, context_.time};
             if (is_shadowed(*scene.surfaces, ray, distance)) kernel[i] = 0.0f;
         }
-    }
-
-    /// One lobe for all ways on from a vertex: around their middle, and the wider the more they
-    /// differ. Any lobe will do that is nowhere 0.
-    static void aim(const GroupView& view, PathVertex& v)
-    {
-        const float length = std::min(glm::length(view.middle), 1.0f);
-        v.wo = length > 0.0f ? view.middle / length : Vec3(0.0f, 0.0f, 1.0f);
-        v.lobe = *v.phase;
-        v.lobe.g *= length;
-        v.lobe.g_b *= length;
     }
 
     void add_shadow_ray(const ScatterEvent& event, PathVertex& v)
@@ -207,7 +193,7 @@ void measure_excess(const SharingContext& context, const PathLevel& level, PathL
     for (size_t j = 0; j < taus.size(); ++j) {
         PathVertex& v = next.vertices[j];
         const float assumed = assumed_transmittance(context.extinction, v.x, queries[j].o);
-        v.log_excess = std::log(assumed) + std::min(taus[j], deepest);
+        v.log_excess = std::log(assumed) + taus[j];
     }
 }
 
