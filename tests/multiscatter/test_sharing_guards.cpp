@@ -191,6 +191,9 @@ TEST(SharingGuards, SurfacesDoNotHideWhatLiesOnThem)
         ASSERT_FALSE(next_again.vertices.empty());
         EXPECT_EQ(next_again.vertices[0].x, found.x);
         EXPECT_GT(level_again.kernels[1], 0.0f);
+        EXPECT_TRUE(is_finite(sharing.light(seed)));
+        sharing.first[1].x = found.x;
+        EXPECT_TRUE(is_finite(sharing.light(seed)));
         ++met;
     }
     EXPECT_GT(met, 5);
