@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "reference/render.h"
+#include "support/surface_scene.h"
 
 namespace mote {
 namespace {
@@ -54,6 +55,29 @@ TEST(Equiangular, DistancesHaveADensityWhereverTheLampIs)
     EXPECT_EQ(density_by(0.0f, 1e5f), 0.0);
     EXPECT_EQ(density_by(1e5f, 1e5f), 0.0);
     EXPECT_EQ(density_by(0.0f, 1e9f), 0.0);
+}
+
+/// Rounding does not carry the nearest events behind the camera, there through a wall to the lamp.
+TEST(Equiangular, EventsStayOnTheRay)
+{
+    constexpr uint32_t draws_zero = 47'216'831;
+    for (int i = 0; i < 200; ++i) {
+        const float z = -0.3f - 0.002f * static_cast<float>(i);
+        Scene scene = lit_by(PointLight{Vec3(0.0f, 0.0f, z), Spectrum(1.0f)});
+        test::add_surfaces(
+            scene,
+            {{test::quad_mesh({-9.0f, -9.0f, -1e-6f}, {18.0f, 0.0f, 0.0f}, {0.0f, 18.0f, 0.0f}),
+              test::diffuse(Spectrum(0.5f))}});
+        const PathTracerParams params;
+        const LightSampler lights(scene, params);
+        const TraceContext context{scene, lights, params};
+        const auto segment =
+            make_camera_segment(scene.media, {Vec3(0.0f), Vec3(0.0f, 0.0f, 1.0f)}, infinity);
+        ASSERT_TRUE(segment);
+        Rng rng(1, 0, Stream::Test, draws_zero, 0);
+        ASSERT_EQ(Rng(rng).uniform(), 0.0f);
+        EXPECT_EQ(estimate_equiangular(context, *segment, rng), Spectrum(0.0f)) << z;
+    }
 }
 
 /// Distances to the lamp are not told apart any more; 5 standard errors, once in 1.7 million seeds.
