@@ -99,7 +99,7 @@ PathPixel combine_paths(const PathPixel& own, std::span<const OtherPath> others,
     PathPixel out;
     color = Spectrum(0.0f);
     WeightedChoice choice;
-    const float m_0 = own.r.W > 0.0f ? own_weight(own, others, c, form) : 0.0f;
+    const float m_0 = own_weight(own, others, c, form);
     color += m_0 * own.r.W * own.f;
     if (choice.add(weight_of(m_0, own.r.p_hat, own.r.W), rng.uniform())) out = own;
     for (const OtherPath& other : others) {

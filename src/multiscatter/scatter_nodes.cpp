@@ -111,12 +111,10 @@ NodeBudget budget_of(const std::vector<NodeView>& views, const ScatterNodesParam
 Spectrum trace_node(const TraceContext& context, const Phase& phase, Vec3 node, Vec3 wo,
                     float mean_count, Rng& rng)
 {
-    int count = static_cast<int>(std::lround(std::min(mean_count, 1e6f)));
-    float weight = 1.0f / static_cast<float>(std::max(count, 1));
-    if (mean_count < 1.0f) {
-        count = rng.uniform() < mean_count ? 1 : 0;
-        weight = 1.0f / mean_count;
-    }
+    const bool is_rare = mean_count < 1.0f;
+    const int count = is_rare ? (rng.uniform() < mean_count ? 1 : 0)
+                              : static_cast<int>(std::lround(std::min(mean_count, 1e6f)));
+    const float weight = 1.0f / (is_rare ? mean_count : static_cast<float>(count));
     ScatterEvent event{node, wo, 0.0f, &phase};
     Spectrum sum(0.0f);
     for (int i = 0; i < count; ++i) {
@@ -144,8 +142,8 @@ float choose_spacing(const Scene& scene, Vec3 eye)
     const float nearest = glm::length(glm::max(Vec3(0.0f), glm::max(box.lo - eye, eye - box.hi)));
     const float pixel =
         std::max(nearest, 0.05f * diagonal) / std::sqrt(pixels_per_steradian(scene.camera));
-    const float flight = densest > 0.0f ? flights / densest : diagonal;
-    return std::clamp(std::max(flight, pixels * pixel), 1e-3f * diagonal, 0.125f * diagonal);
+    return std::clamp(std::max(flights / densest, pixels * pixel), 1e-3f * diagonal,
+                      0.125f * diagonal);
 }
 
 }  // namespace

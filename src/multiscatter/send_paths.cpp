@@ -14,9 +14,6 @@
 namespace mote {
 namespace {
 
-/// Optical depths beyond which floats know no transmittance.
-constexpr float deepest = 104.0f;
-
 /// How one group's paths are sent.
 struct GroupScratch {
     LaneGroup lanes;
@@ -152,17 +149,17 @@ class PathSender {
         eval_kernels(scratch_.lanes, context_.extinction, found.x, normal, kernel);
         hide_shadowed(members, found, kernel);
         const GroupView view = view_of(scratch_.lanes, found.x, kernel);
-        if (!(view.density > 0.0f)) {
+        const float by_paths = view.density * static_cast<float>(members.size());
+        if (!std::isfinite(1.0f / by_paths)) {  // out of sight, for floats
             level_.kernels.resize(first);
             return;
         }
-        const float by_paths = view.density * static_cast<float>(members.size());
         // Where lamps' light is looked for both ways, both weights sum to 1.
         const float near = sigma_t > 0.0f ? near_.density(found.x) / sigma_t : 0.0f;
         if (found.surface >= 0) {
             light_surface(members, kernel, found);
         } else {
-            aim(view, found);
+            aim_lobe(view, found);
             const float share = found.goes_on ? by_paths / (by_paths + near) : 1.0f;
             add_shadow_ray(next_.event(found, context_.time), share, found);
             if (!found.goes_on && found.arrival_count == 0) {
@@ -193,17 +190,6 @@ class PathSender {
             const Ray ray{o, (x - o) / distance, context_.time};
             if (is_shadowed(*scene.surfaces, ray, distance)) kernel[i] = 0.0f;
         }
-    }
-
-    /// One lobe for all ways on from a vertex: around their middle, and the wider the more they
-    /// differ. Any lobe will do that is nowhere 0.
-    static void aim(const GroupView& view, PathVertex& v)
-    {
-        const float length = std::min(glm::length(view.middle), 1.0f);
-        v.wo = length > 0.0f ? view.middle / length : Vec3(0.0f, 0.0f, 1.0f);
-        v.lobe = *v.phase;
-        v.lobe.g *= length;
-        v.lobe.g_b *= length;
     }
 
     void add_shadow_ray(const ScatterEvent& event, float share, PathVertex& v)
@@ -266,7 +252,7 @@ void measure_excess(const SharingContext& context, const PathLevel& level, PathL
     for (size_t j = 0; j < taus.size(); ++j) {
         PathVertex& v = *traced[j];
         const float assumed = assumed_transmittance(context.extinction, v.x, queries[j].o);
-        v.log_excess = std::log(assumed) + std::min(taus[j], deepest);
+        v.log_excess = std::log(assumed) + taus[j];
     }
 }
 

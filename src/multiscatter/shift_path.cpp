@@ -1,7 +1,5 @@
 #include "multiscatter/shift_path.h"
 
-#include <cmath>
-
 namespace mote {
 
 std::optional<ShiftedPath> shift_path(const ReusedPath& y, const PathEndpoint& from,
@@ -21,8 +19,7 @@ std::optional<ShiftedPath> shift_path(const ReusedPath& y, const PathEndpoint& f
         if (map.suffix == SuffixRule::Traced) find_light(to.world, out.y, ignored);
     }
     out.f = eval_path(to.world, to.domain, out.y);
-    const bool is_usable = out.jacobian > 0.0f && std::isfinite(out.jacobian);
-    if (!is_usable || !(max_component(out.f) > 0.0f)) return std::nullopt;
+    if (!(max_component(out.f) > 0.0f)) return std::nullopt;
     return out;
 }
 

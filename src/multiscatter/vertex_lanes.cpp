@@ -1,5 +1,6 @@
 #include "multiscatter/vertex_lanes.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace mote {
@@ -127,6 +128,16 @@ GroupView view_of(const LaneGroup& group, Vec3 y, std::span<const float> kernel)
     const float sum = sum_of(density);
     if (!(sum > 0.0f)) return {};
     return {sum, Vec3(sum_of(x_sum), sum_of(y_sum), sum_of(z_sum)) / sum};
+}
+
+void aim_lobe(const GroupView& view, PathVertex& v)
+{
+    // Directions are rounded, and those between vertices in one place have no length.
+    const float length = std::min(glm::length(view.middle), 1.0f);
+    v.wo = length > 0.0f ? view.middle / length : Vec3(0.0f, 0.0f, 1.0f);
+    v.lobe = *v.phase;
+    v.lobe.g *= length;
+    v.lobe.g_b *= length;
 }
 
 void scatter_to_group(const LaneGroup& group, const PathVertex& y, std::span<const float> kernel,

@@ -70,6 +70,10 @@ struct GroupView {
 };
 [[nodiscard]] GroupView view_of(const LaneGroup& group, Vec3 y, std::span<const float> kernel);
 
+/// Gives a vertex in a medium one lobe for all ways on from it: around their middle, and the wider
+/// the more they differ. Any lobe will do that is nowhere 0.
+void aim_lobe(const GroupView& view, PathVertex& v);
+
 /// Sums per vertex of a group and per channel.
 struct LaneSums {
     std::vector<Float8> r, g, b;

@@ -53,7 +53,8 @@ ScatterEvent even_event(Vec3 x)
     return {x, Vec3(0.0f, 0.0f, 1.0f), path_time, &even_phase};
 }
 
-/// From x1 to x2 as one would see it from either: directions drawn are rounded.
+/// From x1 to x2 as one would see it from either: directions drawn are rounded. Where dense smoke
+/// is far from the origin, both may be rounded to one place; the direction drawn stays then.
 void look_from_first(SecondVertex& v)
 {
     const Vec3 way = v.x2 - v.x1;
@@ -100,7 +101,6 @@ std::optional<SecondVertex> walk_to_second(const PathWorld& world, const PixelDo
     if (v.collision) {
         v.x2 = ray.at(v.collision->t);
         look_from_first(v);
-        if (!(v.r > 0.0f)) return std::nullopt;
     } else {
         if (!hit) return std::nullopt;
         v.surface = make_vertex(*scene.surfaces, *hit, path_time);

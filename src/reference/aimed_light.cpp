@@ -33,7 +33,7 @@ float light_ahead(const TraceContext& context, Vec3 x, Vec3 to_light)
     constexpr float never_none = 0.01f;
     std::optional<float> guess;
     if (context.shadows) guess = context.shadows->to_infinity(x, to_light);
-    const float T = std::clamp(guess.value_or(unknown_transmittance), least, 1.0f);
+    const float T = std::max(guess.value_or(unknown_transmittance), least);
     return never_none - T * std::log(T);
 }
 

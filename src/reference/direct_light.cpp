@@ -49,7 +49,6 @@ std::optional<ShadowRay> sample_emission_ray(const TraceContext& context, const 
     const float pdf = choice.pmf * sample.pdf_volume;  // [1/m^3]
     const float weight = shadow_ray_weight(
         context.params, pdf, seen_emission_pdf(emissive, scattering.pdf_dir, distance2));
-    if (!(weight > 0.0f)) return std::nullopt;
     return ShadowRay{wi, distance, sample.j * (weight / (distance2 * pdf)), scattering};
 }
 
@@ -124,7 +123,7 @@ Spectrum seen_light(const TraceContext& context, const LightRay& light_ray,
     float weight = 1.0f;
     if (!light_ray.is_camera) {
         const float pmf = context.lights.pmf(LightSource::Environment, 0, ray.o);
-        const float pdf_light = pmf > 0.0f ? pmf * environment_pdf(*environment, ray.d) : 0.0f;
+        const float pdf_light = pmf * environment_pdf(*environment, ray.d);
         weight = seen_weight(context.params, light_ray.pdf_dir, pdf_light);
     }
     if (!(weight > 0.0f)) return sum;
@@ -141,7 +140,7 @@ Spectrum seen_surface_light(const TraceContext& context, const LightRay& light_r
     const Light& light = context.scene.lights[static_cast<size_t>(index)];
     const Ray& ray = light_ray.ray;
     const float pmf = context.lights.pmf(LightSource::Lamp, index, ray.o, context.guide);
-    const float pdf_light = pmf > 0.0f ? pmf * light_pdf(light, ray.o, ray.d) : 0.0f;
+    const float pdf_light = pmf * light_pdf(light, ray.o, ray.d);
     return seen_weight(context.params, light_ray.pdf_dir, pdf_light) * Le;
 }
 

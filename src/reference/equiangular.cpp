@@ -24,6 +24,10 @@ std::optional<Attractor> attractor_of(const Light& light)
     return std::nullopt;
 }
 
+/// From lamps further away, all of the segment is about as far, and floats tell its distances apart
+/// no better than to 0.1 %: such lamps attract nothing.
+constexpr float least_angle = 1e-4f;
+
 /// Distances t with density proportional to 1 / (closest^2 + (t - nearest)^2).
 struct Equiangular {
     float nearest;
@@ -47,7 +51,7 @@ Equiangular make_equiangular(const CameraSegment& segment, const Attractor& lamp
 float pdf_dist(const Equiangular& e, float t)
 {
     const float angle = e.theta1 - e.theta0;
-    if (!(angle > 0.0f)) return 0.0f;
+    if (!(angle >= least_angle)) return 0.0f;
     return e.closest / (angle * (sqr(e.closest) + sqr(t - e.nearest)));
 }
 
@@ -110,7 +114,6 @@ float equiangular_ratio(const TraceContext& context, const FirstEvent& event, in
     if (!attractor) return 0.0f;
     const CameraSegment& segment = *event.segment;
     const float pmf = context.lights.pmf(LightSource::Lamp, lamp, segment.middle);
-    if (!(pmf > 0.0f)) return 0.0f;
     return pmf * pdf_dist(make_equiangular(segment, *attractor), event.t) / event.flight_pdf;
 }
 

@@ -30,7 +30,8 @@ struct FirstEvent {
                                           float t);
 
 /// Density of choosing this lamp and the event's distance by equiangular sampling, over the free
-/// flight's density of that distance. 0 for lamps that are neither points nor spheres.
+/// flight's density of that distance. 0 for lamps that are neither points nor spheres, or too far
+/// away for distances to matter.
 [[nodiscard]] float equiangular_ratio(const TraceContext& context, const FirstEvent& event,
                                       int lamp);
 

@@ -14,7 +14,7 @@ float scene_radius(const Scene& scene)
     for (const Volume& volume : scene.media.volumes) box.extend(world_bounds(volume));
     if (scene.surfaces) box.extend(scene.surfaces->bvh->bounds());
     const float radius = 0.5f * glm::length(box.extent());
-    return radius > 0.0f && std::isfinite(radius) ? radius : 1.0f;
+    return radius > 0.0f ? std::min(radius, 1e15f) : 1.0f;  // its square is to stay finite
 }
 
 bool can_be_met(const Light& light)

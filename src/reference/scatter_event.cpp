@@ -32,7 +32,6 @@ std::optional<ScatteredDirection> sample_scattering(const ScatterEvent& event, R
     std::optional<ScatteredDirection> s = sample_towards(event, mixture.wo[chosen], rng);
     if (!s) return std::nullopt;
     s->scattering = eval_scattering(event, s->wi);
-    if (!(s->scattering.pdf_dir > 0.0f)) return std::nullopt;
     return s;
 }
 

@@ -104,7 +104,7 @@ void add_indirect(const PassInputs& inputs, const PassKey& key, const PixelDomai
         const CachedGuesses guesses(*inputs.domain.caches);
         const TraceContext context = context_with(inputs, guesses);
         for (float u = rng.uniform() * step; u < 1.0f; u += step) {
-            const float tau = -std::log1p(-std::min(u, one_minus_epsilon) * lost);
+            const float tau = -std::log1p(-u * lost);
             const float choice = rng.uniform();
             ScatterEvent event{Vec3(0.0f), domain.wo(), domain.ray.time};
             Spectrum albedo(1.0f);

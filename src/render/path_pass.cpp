@@ -37,7 +37,7 @@ void walk_tile(const PassInputs& inputs, const PathWorld& world, const Tile& til
             WalkKey walk{static_cast<uint32_t>(scene.frame),
                          static_cast<uint32_t>(y * scene.camera.width + x), pass};
             for (float u = rng.uniform() * step; u < 1.0f; u += step) {
-                draw_paths(world, domain, std::min(u, one_minus_epsilon), walk, paths, cut);
+                draw_paths(world, domain, u, walk, paths, cut);
                 walk.walk += 1u << first_walk_bit;
             }
             n.truncation.add(step * cut);

@@ -13,10 +13,11 @@ struct Group {
     Ray chosen;  ///< each of them with the same probability
 };
 
-/// Which stratum of n along an axis a place within a pixel lies in.
+/// Which stratum of n along an axis a place within a pixel lies in; far to the right, film points
+/// are rounded to the pixel's end.
 int stratum(float place, int n)
 {
-    return std::clamp(static_cast<int>(place * static_cast<float>(n)), 0, n - 1);
+    return std::min(static_cast<int>(place * static_cast<float>(n)), n - 1);
 }
 
 }  // namespace

@@ -19,8 +19,7 @@ Vec3 geometric_normal(const Surfaces& surfaces, const SurfaceHit& hit, float tim
         world_triangle(surfaces.bvh->frame_at(object, time), surfaces.mesh(hit.object),
                        static_cast<size_t>(hit.triangle));
     const Vec3 n = glm::cross(triangle.edge_u, triangle.edge_v);
-    const float length = glm::length(n);
-    return length > 0.0f ? n / length : n;
+    return n / glm::length(n);
 }
 
 }  // namespace

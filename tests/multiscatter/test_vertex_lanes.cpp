@@ -59,6 +59,19 @@ TEST(LobeLanes, AreThePhaseFunction)
     }
 }
 
+/// Straight on is straight on, whatever directions are rounded to.
+TEST(LobeLanes, PeaksAreSound)
+{
+    for (const float g : {-0.999f, 0.0f, 0.999f}) {
+        LobeLanes lobe;
+        for (int k = 0; k < lane_count; ++k) lobe.set(k, g, 1.0f);
+        for (const float more : {1e-6f, 1e-5f}) {
+            const float peak = eval_hg(std::copysign(1.0f, g), g);
+            EXPECT_NEAR(lobe.eval(splat(std::copysign(1.0f + more, g)))[0], peak, 3e-5f * peak);
+        }
+    }
+}
+
 TEST(VertexLanes, KernelsAreDensitiesOfPaths)
 {
     const CoarseExtinction extinction = clump_extinction();
