@@ -88,8 +88,8 @@ Spectrum estimate_direct_light(const TraceContext& context, const ScatterEvent& 
            estimate_visibility(context, event, ray->wi, ray->distance, rng);
 }
 
-Spectrum seen_light(const TraceContext& context, const LightRay& light_ray,
-                    std::optional<float> t_end, Rng& rng)
+SeenLight seen_light(const TraceContext& context, const LightRay& light_ray,
+                     std::optional<float> t_end, Rng& rng)
 {
     const Ray& ray = light_ray.ray;
     const auto visibility = [&](float t) {
@@ -97,7 +97,7 @@ Spectrum seen_light(const TraceContext& context, const LightRay& light_ray,
         if (t > light_ray.t_surface) return 0.0f;
         return estimate_attenuation(context, ray, t, rng);
     };
-    Spectrum sum(0.0f);
+    SeenLight seen;
     if (context.lights.has_surfaces()) {
         context.lights.for_each_lamp_on_ray(ray, [&](int index) {
             const Light& light = context.scene.lights[static_cast<size_t>(index)];
@@ -114,20 +114,23 @@ Spectrum seen_light(const TraceContext& context, const LightRay& light_ray,
                     seen_weight(context.params, light_ray.pdf_dir, pmf * pdf_dir, ratio * pdf_dir);
             }
             if (weight > 0.0f)
-                sum += hit->Le * (weight * visibility(clear_distance(hit->distance)));
+                seen.lamps += hit->Le * (weight * visibility(clear_distance(hit->distance)));
         });
     }
     const auto& environment = context.scene.environment;
-    if (!environment || (t_end && *t_end < infinity)) return sum;
-    if (light_ray.t_surface < infinity) return sum;
+    if (!environment || (t_end && *t_end < infinity)) return seen;
+    if (light_ray.t_surface < infinity) return seen;
     float weight = 1.0f;
     if (!light_ray.is_camera) {
         const float pmf = context.lights.pmf(LightSource::Environment, 0, ray.o);
         const float pdf_light = pmf * environment_pdf(*environment, ray.d);
         weight = seen_weight(context.params, light_ray.pdf_dir, pdf_light);
     }
-    if (!(weight > 0.0f)) return sum;
-    return sum + environment_radiance(*environment, ray.d) * (weight * visibility(infinity));
+    if (weight > 0.0f) {
+        seen.environment =
+            environment_radiance(*environment, ray.d) * (weight * visibility(infinity));
+    }
+    return seen;
 }
 
 Spectrum seen_surface_light(const TraceContext& context, const LightRay& light_ray,

@@ -34,11 +34,17 @@ struct ShadowRay {
 [[nodiscard]] Spectrum estimate_direct_light(const TraceContext& context, const ScatterEvent& event,
                                              Rng& rng);
 
+/// Light that a ray meets, attenuated.
+struct SeenLight {
+    Spectrum lamps{0.0f};
+    Spectrum environment{0.0f};
+};
+
 /// Light of lamps and of the environment that a ray meets, before any surface. t_end: where the
 /// ray's free flight ended, at the surface or infinity if it left the media; empty to estimate
 /// transmittances instead.
-[[nodiscard]] Spectrum seen_light(const TraceContext& context, const LightRay& light_ray,
-                                  std::optional<float> t_end, Rng& rng);
+[[nodiscard]] SeenLight seen_light(const TraceContext& context, const LightRay& light_ray,
+                                   std::optional<float> t_end, Rng& rng);
 
 /// Light that the surface at the ray's end (light_ray.t_surface) gives off itself, weighted against
 /// shadow rays. Media in between are the caller's business.

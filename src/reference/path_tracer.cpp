@@ -65,7 +65,8 @@ void follow(const TraceContext& context, const PathState& start,
         const TracedSegment found =
             trace_segment(context, light_ray, is_last && event_count > 0, rng);
         add(result.emission, found.emission);
-        add(result.background, found.background);
+        add(result.background, found.background());
+        if (event_count == 1) result.sky += beta * found.seen.environment;
         add(result.surface_emission, found.surface_emission);
         const std::optional<Collision>& collision = found.collision;
         const std::optional<SurfaceVertex>& vertex = found.vertex;

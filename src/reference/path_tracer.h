@@ -19,10 +19,12 @@ struct PathResult {
     Spectrum surface_direct{0.0f};    ///< one scattering event, on a surface
     Spectrum surface_indirect{0.0f};  ///< two and more, the first of them on a surface
     Spectrum surface_emission{0.0f};  ///< from emissive surfaces straight to the camera
-    float transmittance = 1.0f;       ///< unbiased estimate (0 or 1), camera to infinity
-    float depth = infinity;           ///< of the first event, whether it scatters or not [m]
-    Spectrum albedo{0.0f};            ///< at the first event
-    int object = -1;                  ///< of the first event, into Surfaces; -1: in a medium
+    Spectrum sky{0.0f};  ///< of direct and surface_direct, what the scattered ray itself has found
+                         ///< of the environment
+    float transmittance = 1.0f;  ///< unbiased estimate (0 or 1), camera to infinity
+    float depth = infinity;      ///< of the first event, whether it scatters or not [m]
+    Spectrum albedo{0.0f};       ///< at the first event
+    int object = -1;             ///< of the first event, into Surfaces; -1: in a medium
     /// Weight that the path had left when max_bounces cut it, 0: it was not cut. What is missing is
     /// at most this times the light that would have arrived.
     float cut = 0.0f;

@@ -19,7 +19,7 @@ TracedSegment trace_segment(const TraceContext& context, LightRay& light_ray, bo
     }
     if (has_emission) segment.emission = seen_emission(context, light_ray, *t_end, rng);
     if (only_light) t_end.reset();
-    segment.background = seen_light(context, light_ray, t_end, rng);
+    segment.seen = seen_light(context, light_ray, t_end, rng);
     if (hit && (!segment.collision || !t_end)) {
         segment.vertex = make_vertex(*scene.surfaces, *hit, ray.time);
     }

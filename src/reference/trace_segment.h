@@ -9,12 +9,13 @@ namespace mote {
 /// What a ray brings up to its next event, and that event.
 struct TracedSegment {
     Spectrum emission{0.0f};          ///< of media along it
-    Spectrum background{0.0f};        ///< of lamps and of the environment
+    SeenLight seen;                   ///< of lamps and of the environment
     Spectrum surface_emission{0.0f};  ///< of the surface at its end
     std::optional<Collision> collision;
     std::optional<SurfaceVertex> vertex;  ///< of the surface, where no collision comes before it
 
-    [[nodiscard]] Spectrum light() const { return emission + background + surface_emission; }
+    [[nodiscard]] Spectrum background() const { return seen.lamps + seen.environment; }
+    [[nodiscard]] Spectrum light() const { return emission + background() + surface_emission; }
 };
 
 /// Follows a ray to its next event and gathers the light that it meets on the way, weighted by MIS

@@ -39,6 +39,7 @@ struct PassInputs {
     const ScatterNodes* nodes = nullptr;  ///< for previews; null: none
     bool shares_paths = false;            ///< of many events: see shares_paths()
     bool paths_bring_sky = false;         ///< see paths_bring_sky()
+    bool surface_paths_bring_sky = false;
     Buffer2D<Spectrum>* path_light = nullptr;  ///< of reused paths, by pass; null: none are reused
     AimedLights aims{};                        ///< of paths of many events
     PixelSplits split{};                       ///< where pixels take several camera rays

@@ -38,6 +38,17 @@ TraceContext context_with(const PassInputs& inputs, const CachedGuesses& guesses
             &guesses.shadows,     guesses.guide(), &inputs.aims};
 }
 
+/// Whether there is a constant environment that paths find by scattered rays alone, and go on until
+/// they do.
+bool finds_sky_by_paths(const Scene& scene, const RenderDescription& render)
+{
+    // Fewer events cut paths that have not yet found it.
+    constexpr int enough_bounces = 8;
+    return scene.environment && !scene.environment->map && render.restir.corrections &&
+           render.restir.control_variate && render.path.max_bounces >= enough_bounces &&
+           render.path.light_strategy == LightStrategy::Auto;
+}
+
 PathVertex first_vertex(const ScatterEvent& event, Spectrum weight, int owner)
 {
     PathVertex v;
@@ -68,16 +79,16 @@ bool shares_paths(const Scene& scene, const RenderDescription& render)
 
 bool paths_bring_sky(const Scene& scene, const RenderDescription& render)
 {
-    // Fewer events cut paths that have not yet found it.
-    constexpr int enough_bounces = 8;
     const RestirParams& params = render.restir;
-    const bool is_asked = params.indirect == IndirectLight::Auto &&
-                          params.indirect_reuse == IndirectReuse::Off && params.corrections &&
-                          params.control_variate && render.path.max_bounces >= enough_bounces;
-    return is_asked && scene.environment && !scene.environment->map && scene.lights.empty() &&
-           !scene.surfaces &&
+    return finds_sky_by_paths(scene, render) && params.indirect == IndirectLight::Auto &&
+           params.indirect_reuse == IndirectReuse::Off && scene.lights.empty() && !scene.surfaces &&
            std::none_of(scene.media.volumes.begin(), scene.media.volumes.end(),
                         [](const Volume& volume) { return volume.emission_params.is_on(); });
+}
+
+bool surface_paths_bring_sky(const Scene& scene, const RenderDescription& render)
+{
+    return scene.surfaces && finds_sky_by_paths(scene, render);
 }
 
 void add_indirect(const PassInputs& inputs, const PassKey& key, const PixelDomain& domain,
@@ -108,7 +119,8 @@ void add_indirect(const PassInputs& inputs, const PassKey& key, const PixelDomai
             const float choice = rng.uniform();
             ScatterEvent event{Vec3(0.0f), domain.wo(), domain.ray.time};
             Spectrum albedo(1.0f);
-            if (surface && !(tau < depth)) {
+            const bool surface_event = surface && !(tau < depth);
+            if (surface_event) {
                 event.x = surface->p;
                 event.surface = surface;
             } else {
@@ -124,6 +136,9 @@ void add_indirect(const PassInputs& inputs, const PassKey& key, const PixelDomai
             sample.indirect += weight * albedo * path.indirect;
             if (inputs.paths_bring_sky) sample.direct += weight * albedo * path.direct;
             sample.surface_indirect += weight * path.surface_indirect;
+            if (surface_event && inputs.surface_paths_bring_sky) {
+                sample.surface_direct += weight * path.sky;
+            }
             cut += weight * max_component(albedo) * path.cut;
         }
     }

@@ -20,6 +20,10 @@ namespace mote {
 /// 270, 2.8 times as efficient.) Needs no light caches.
 [[nodiscard]] bool paths_bring_sky(const Scene& scene, const RenderDescription& render);
 
+/// The same of surfaces, where the sky's light can be told from that of lamps: whatever else
+/// shines.
+[[nodiscard]] bool surface_paths_bring_sky(const Scene& scene, const RenderDescription& render);
+
 /// Light scattered twice and more along a pixel's ray, by the path tracer from exact first events
 /// on: stratified free flights, each worth the share of light that collides; where a surface ends
 /// the ray, that is all. What media scatter first comes from nodes in previews, from

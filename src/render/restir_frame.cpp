@@ -79,6 +79,8 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
     const bool keeps_history = uses_history(render);
     FrameDomain domain = make_frame_domain(share(scene, keeps_history), history.caches,
                                            render.restir, &history.last);
+    const bool surfaces_bring_sky = surface_paths_bring_sky(scene, render);
+    if (surfaces_bring_sky) domain.bsdf_finds.environment = false;
     domain.mean_known = mean_known_light(domain);
     stats.cache_cpu_seconds = process_cpu_seconds() - cpu_start;
     std::optional<Change> change;
@@ -102,6 +104,7 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
                             nodes ? &*nodes : nullptr,
                             shares && history.caches->extinction,
                             brings_sky,
+                            surfaces_bring_sky,
                             plan.paths ? &path_light : nullptr,
                             find_aimed_lights(scene),
                             find_split_pixels(scene, domain.params.edge_strata)};

@@ -39,7 +39,7 @@ Counts counts_for(const FrameDomain& frame)
     // A constant environment is found by the BSDF's directions alone.
     const auto& environment = frame.scene->environment;
     if (!environment) return n;
-    n.bsdf = std::max(n.bsdf, environment_rays_of(frame.params));
+    if (frame.bsdf_finds.environment) n.bsdf = std::max(n.bsdf, environment_rays_of(frame.params));
     if (environment->map) n.environment = std::max(1, environment_rays_of(frame.params) / 2);
     return n;
 }
