@@ -54,8 +54,8 @@ float offset_bound(const InstanceFrame& frame, const ObjectTriangle& triangle, V
 
 /// Distance from the triangle's edges [offsets] that its points keep. Where two walls meet, a point
 /// nearer to the edge than rounding errors may lie behind the other wall, and see out of a closed
-/// room from there. More than 1, as other walls have offsets of their own and may lean.
-constexpr double edge_distance = 4.0;
+/// room from there.
+constexpr double edge_distance = 1.0;
 /// But no weight of a corner grows to more than this.
 constexpr double most_inset = 0.1;
 

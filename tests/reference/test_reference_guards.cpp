@@ -70,7 +70,7 @@ TEST(LightSamplerGuards, LampsTooBrightForNumbersAreLeftToScatteredRays)
         EXPECT_FLOAT_EQ(t.lights.pmf(LightSource::Lamp, 2, Vec3(0.0f)), 0.5f);
         const LightRay ray{{Vec3(0.0f), Vec3(0.0f, 0.0f, 1.0f)}, 0.1f, false};
         Rng rng = rng_of(0);
-        EXPECT_EQ(seen_light(t.context, ray, infinity, rng), dazzling.radiance);
+        EXPECT_EQ(seen_light(t.context, ray, infinity, rng).lamps, dazzling.radiance);
     }
 }
 
@@ -122,7 +122,7 @@ TEST(DirectLightGuards, LampsOfNextToNoSizeBringNoNumbersThatAreNone)
         EXPECT_TRUE(is_finite(estimate_equiangular(t.context, *segment, rng)));
         const LightRay right_at_it{
             {place - Vec3(0.0f, 0.0f, z), Vec3(0.0f, 0.0f, 1.0f)}, 0.1f, false};
-        EXPECT_TRUE(is_finite(seen_light(t.context, right_at_it, infinity, rng)));
+        EXPECT_TRUE(is_finite(seen_light(t.context, right_at_it, infinity, rng).lamps));
     }
 }
 
@@ -191,7 +191,7 @@ TEST(DirectLightGuards, LampsOnWallsAreSeenWhole)
         const auto hit = intersect(*t.scene.surfaces, ray.ray, {0.0f, infinity});
         ASSERT_TRUE(hit);
         ray.t_surface = hit->t;
-        EXPECT_EQ(seen_light(t.context, ray, hit->t, rng), Spectrum(1.0f)) << i;
+        EXPECT_EQ(seen_light(t.context, ray, hit->t, rng).lamps, Spectrum(1.0f)) << i;
     }
 }
 
