@@ -24,7 +24,8 @@ Trs MovingTransform::at(float time) const
     if (keys.size() == 1) return keys[0];
     const double x =
         std::clamp(static_cast<double>(time), 0.0, 1.0) * static_cast<double>(keys.size() - 1);
-    const size_t i = std::min(static_cast<size_t>(x), keys.size() - 2);
+    // A time that is no number is at no place, either.
+    const size_t i = x >= 0.0 ? std::min(static_cast<size_t>(x), keys.size() - 2) : 0;
     return interpolate(keys[i], keys[i + 1], x - static_cast<double>(i));
 }
 
