@@ -50,6 +50,7 @@ enum class Stream : uint32_t {
     PathChoice,
     PathTemporal,
     PathSpatial,
+    RadianceCache,
 };
 
 /// Counter-based generator: the n-th number of a stream is a pure function of its key and n, so
