@@ -9,12 +9,12 @@ namespace mote {
 struct ResidualParams {
     static constexpr int most_directions = 8;
 
-    int directions = 4;        ///< from the first event, [1, most_directions]
-    int later_directions = 4;  ///< from those that carry the residual on
-    /// With which the residual is carried on from the first event, (0, 1]. Its weight grows by the
-    /// inverse once, and then it lives on as the albedo lets it: a probability below albedo^2 at
-    /// every event would make the variance infinite.
-    float survival = 0.25f;
+    int directions = 2;        ///< from the first event, [1, most_directions]
+    int later_directions = 2;  ///< from those that carry the residual on
+    /// With which the residual is carried on from the first event, (0, 1]. Below 1 its weight grows
+    /// by the inverse once, and then it lives on as the albedo lets it: a probability below
+    /// albedo^2 at every event would make the variance infinite.
+    float survival = 1.0f;
 };
 
 /// What trace_after_event estimates of an event in a medium, PathResult::indirect and ::cut, with a

@@ -2,6 +2,7 @@
 
 #include "core/sobol.h"
 #include "multiscatter/path_vertex.h"
+#include "multiscatter/radiance_cache.h"
 #include "multiscatter/scatter_nodes.h"
 #include "render/aov.h"
 #include "render/film.h"
@@ -43,6 +44,7 @@ struct PassInputs {
     Buffer2D<Spectrum>* path_light = nullptr;  ///< of reused paths, by pass; null: none are reused
     AimedLights aims{};                        ///< of paths of many events
     PixelSplits split{};                       ///< where pixels take several camera rays
+    const RadianceCache* radiance = nullptr;   ///< for residual walks; null: plain paths
 };
 
 /// One pixel's pass: where, and which.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "multiscatter/cached_lights.h"
+#include "multiscatter/residual_walk.h"
 #include "multiscatter/scatter_along.h"
 #include "multiscatter/shared_paths.h"
 #include "multiscatter/still_scene.h"
@@ -72,9 +73,17 @@ float paths_worth(float lost, int count)
 bool shares_paths(const Scene& scene, const RenderDescription& render)
 {
     const RestirParams& params = render.restir;
-    return params.indirect_reuse == IndirectReuse::Off && params.indirect != IndirectLight::Paths &&
-           params.corrections && render.path.max_bounces > 1 && is_still_but_for_camera(scene) &&
+    const bool may_share =
+        params.indirect == IndirectLight::Auto || params.indirect == IndirectLight::Shared;
+    return params.indirect_reuse == IndirectReuse::Off && may_share && params.corrections &&
+           render.path.max_bounces > 1 && is_still_but_for_camera(scene) &&
            !paths_bring_sky(scene, render);
+}
+
+bool corrects_cache(const Scene& scene, const RenderDescription& render)
+{
+    return render.restir.indirect == IndirectLight::Cached && render.path.max_bounces > 1 &&
+           media_in_view(scene);
 }
 
 bool paths_bring_sky(const Scene& scene, const RenderDescription& render)
@@ -132,7 +141,9 @@ void add_indirect(const PassInputs& inputs, const PassKey& key, const PixelDomai
                     continue;
                 }
             }
-            const PathResult path = trace_after_event(context, event, rng);
+            const PathResult path = inputs.radiance && event.phase
+                                        ? residual_light(context, *inputs.radiance, {}, event, rng)
+                                        : trace_after_event(context, event, rng);
             sample.indirect += weight * albedo * path.indirect;
             if (inputs.paths_bring_sky) sample.direct += weight * albedo * path.direct;
             sample.surface_indirect += weight * path.surface_indirect;

@@ -24,12 +24,15 @@ namespace mote {
 /// shines.
 [[nodiscard]] bool surface_paths_bring_sky(const Scene& scene, const RenderDescription& render);
 
+/// Whether residual walks from a frame's pixels correct a cache of radiance.
+[[nodiscard]] bool corrects_cache(const Scene& scene, const RenderDescription& render);
+
 /// Light scattered twice and more along a pixel's ray, by the path tracer from exact first events
 /// on: stratified free flights, each worth the share of light that collides; where a surface ends
 /// the ray, that is all. What media scatter first comes from nodes in previews, from
-/// `path_light` where paths are reused; where they are shared, first events go to `first` under
-/// `owner`, for light_shared_paths. Does nothing if light scatters only once. `surface`: that ends
-/// the ray; may be null.
+/// `path_light` where paths are reused, from residual walks where there is a cache of radiance;
+/// where they are shared, first events go to `first` under `owner`, for light_shared_paths. Does
+/// nothing if light scatters only once. `surface`: that ends the ray; may be null.
 void add_indirect(const PassInputs& inputs, const PassKey& key, const PixelDomain& domain,
                   const SurfaceVertex* surface, int owner, std::vector<PathVertex>& first,
                   FilmSample& sample, PassCounts& counts);

@@ -95,6 +95,15 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
             {render.restir.node_paths, render.restir.node_spacing, render.samples, render.seed});
         stats.cache_cpu_seconds += nodes->cpu_seconds;
     }
+    const AimedLights aims = find_aimed_lights(scene);
+    std::optional<RadianceCache> radiance;
+    if (!nodes && !plan.paths && corrects_cache(scene, render)) {
+        const CachedGuesses guesses(*history.caches);
+        radiance = make_radiance_cache(
+            {scene, lights, render.path, &guesses.shadows, guesses.guide(), &aims},
+            share_of_paths(pixel_passes(render) * render.restir.indirect_paths, render.seed));
+        stats.cache_cpu_seconds += radiance->cpu_seconds;
+    }
     Buffer2D<Spectrum> path_light;
     if (plan.paths) path_light = {scene.camera.width, scene.camera.height};
     const PassInputs inputs{domain,
@@ -106,8 +115,9 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
                             brings_sky,
                             surfaces_bring_sky,
                             plan.paths ? &path_light : nullptr,
-                            find_aimed_lights(scene),
-                            find_split_pixels(scene, domain.params.edge_strata)};
+                            aims,
+                            find_split_pixels(scene, domain.params.edge_strata),
+                            radiance ? &*radiance : nullptr};
     PassCounts counts;
     bool finished = false;
     if (plan.reuses_samples()) {

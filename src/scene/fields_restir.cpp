@@ -11,7 +11,7 @@ constexpr std::array surface_mis_names = {"auto", "pairwise", "balance", "consta
 constexpr std::array surface_visibility_names = {"exact", "none", "reused", "weighted"};
 constexpr std::array surface_shading_names = {"auto", "chosen", "all"};
 constexpr std::array visibility_names = {"exact", "cached", "none"};
-constexpr std::array indirect_names = {"auto", "paths", "shared"};
+constexpr std::array indirect_names = {"auto", "paths", "shared", "cached"};
 constexpr std::array indirect_reuse_names = {"off", "temporal", "spatial", "both"};
 constexpr std::array indirect_suffix_names = {"traced", "biased-validated"};
 constexpr std::array preset_names = {"default",
@@ -79,7 +79,11 @@ void describe(FieldVisitor& v, RestirParams& restir)
          .doc =
              "Light scattered twice and more in media: by paths of each pixel's own, or by paths "
              "from which pixels of a tile share all that is behind the first event; auto: "
-             "shared, unless more than the camera moves while the shutter is open"},
+             "shared, unless more than the camera moves while the shutter is open. cached, for "
+             "study: walks that correct a coarse cache of radiance, made anew each frame for a "
+             "tenth of the paths; unbiased whatever it says. Measured against the path tracer per "
+             "CPU time: 0.75 (plume of g 0.3) and 1.0 times (1000 lamps) as good, where shared is "
+             "2.3 and 5.2"},
         restir.indirect, indirect_names);
     visit_choice(
         v,

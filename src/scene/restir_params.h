@@ -34,6 +34,7 @@ enum class IndirectLight {
     Auto,    ///< Shared where that is possible: only the camera moves while the shutter is open
     Paths,   ///< paths of the pixel's own
     Shared,  ///< paths whose later vertices pixels share
+    Cached,  ///< walks from the pixel's own first events that correct a coarse cache of radiance
 };
 
 /// Which paths of light scattered twice and more a pixel combines with its own.

@@ -64,14 +64,14 @@ struct Setting {
             return trace_after_event(context(false), event, rng).indirect;
         });
     }
-    [[nodiscard]] MeanEstimate walks(const ResidualParams& params = {},
+    [[nodiscard]] MeanEstimate walks(const ResidualParams& params = {3, 2, 0.5f},
                                      const test::Batches& batches = {32, 300}) const
     {
         return test::mean_of(batches, 2, [&](Rng& rng) {
             return residual_light(context(), cache, params, event, rng).indirect;
         });
     }
-    [[nodiscard]] double p(const ResidualParams& params = {}) const
+    [[nodiscard]] double p(const ResidualParams& params = {3, 2, 0.5f}) const
     {
         return welch_test(walks(params), truth()).p;
     }
@@ -98,7 +98,8 @@ TEST(ResidualWalkStat, AnyEffortLeavesTheMean)
         const Setting setting(cloud({0.5f}), 5, kind);
         const MeanEstimate truth = setting.truth();
         for (const ResidualParams& params :
-             {ResidualParams{1, 1, 1.0f}, ResidualParams{8, 2, 0.1f}, ResidualParams{3, 1, 0.5f}}) {
+             {ResidualParams{}, ResidualParams{1, 1, 1.0f}, ResidualParams{8, 2, 0.1f},
+              ResidualParams{3, 1, 0.5f}}) {
             EXPECT_GT(welch_test(setting.walks(params), truth).p, alarm) << params.directions;
         }
     }
@@ -177,13 +178,13 @@ TEST(ResidualWalkStat, OneEventTooFewIsFoundOut)
     EXPECT_LT(welch_test(two.walks(), three.truth()).p, alarm);
 }
 
-/// What the cache is for: walks may end early. Measured a quarter of the variance.
+/// What the cache is for: walks may end early. Measured 0.18 of the variance.
 TEST(ResidualWalkStat, AGoodCacheTakesRouletteNoiseAway)
 {
     const ResidualParams early{4, 4, 0.1f};
     const Setting good(cloud({0.3f}), 20);
     const Setting empty(cloud({0.3f}), 20, Cache::Empty);
-    EXPECT_LT(good.walks(early).variance, 0.6 * empty.walks(early).variance);
+    EXPECT_LT(good.walks(early).variance, 0.5 * empty.walks(early).variance);
 }
 
 /// What is cut has the same mean as that of plain paths: Welch.
