@@ -82,8 +82,8 @@ void describe(FieldVisitor& v, RestirParams& restir)
              "shared, unless more than the camera moves while the shutter is open. cached, for "
              "study: walks that correct a coarse cache of radiance, made anew each frame for a "
              "tenth of the paths; unbiased whatever it says. Measured against the path tracer per "
-             "CPU time: 0.75 (plume of g 0.3) and 1.0 times (1000 lamps) as good, where shared is "
-             "2.3 and 5.2"},
+             "CPU time: 0.76 (plume of g 0.3) and 1.0 times (1000 lamps) as good, where shared is "
+             "2.2 and 4.8"},
         restir.indirect, indirect_names);
     visit_choice(
         v,
