@@ -8,25 +8,19 @@
 #include "core/parallel.h"
 #include "render/aov.h"
 #include "render/frame.h"
+#include "render/frame_scenes.h"
 #include "render/metadata.h"
 #include "scene/aov_names.h"
-#include "support/media.h"
 
 namespace mote {
 namespace {
 
-/// Camera at (0, 0, 4) looking along -z with a half field of view of 31 degrees.
-Camera front_camera(int width, int height)
-{
-    Camera camera;
-    camera.width = width;
-    camera.height = height;
-    camera.tan_half_fov_y = 0.6f;
-    Trs pose;
-    pose.translate = {0.0, 0.0, 4.0};
-    camera.world_from_camera.keys = {pose};
-    return camera;
-}
+using test::front_camera;
+using test::mean_of;
+using test::options;
+using test::Options;
+using test::render;
+using test::slab_scene;
 
 /// Clumps lit by a lamp, a dim sky and their own emission.
 Scene cloudy_scene()
@@ -53,29 +47,6 @@ std::vector<std::string> all_aovs()
     return names;
 }
 
-struct Options {
-    RenderDescription render;
-    OutputDescription output;
-};
-
-Options options(int samples, int bounces, std::vector<std::string> aovs)
-{
-    Options o;
-    o.render.samples = samples;
-    o.render.path.max_bounces = bounces;
-    o.render.seed = 5;
-    o.output.aovs = std::move(aovs);
-    o.output.color_type = PixelType::Float;
-    return o;
-}
-
-LayeredImage render(const Scene& scene, const Options& o, FrameStats* stats = nullptr)
-{
-    FrameStats own;
-    FrameHistory history;
-    return render_frame(scene, o.render, o.output, history, nullptr, stats ? *stats : own);
-}
-
 bool same_bits(const LayeredImage& a, const LayeredImage& b)
 {
     if (a.channels.size() != b.channels.size()) return false;
@@ -86,13 +57,6 @@ bool same_bits(const LayeredImage& a, const LayeredImage& b)
         if (std::memcmp(x.data(), y.data(), x.size() * sizeof(float)) != 0) return false;
     }
     return true;
-}
-
-double mean_of(const LayeredImage& image, const std::string& channel)
-{
-    double sum = 0.0;
-    for (const float v : image.find(channel)->data) sum += static_cast<double>(v);
-    return sum / static_cast<double>(image.find(channel)->data.size());
 }
 
 TEST(Frame, BitIdenticalForAnyThreadCount)
@@ -157,20 +121,6 @@ TEST(Frame, PartsSumToTheImage)
 }
 
 /// Telephoto view through a cube of constant extinction: all rays are within 1e-4 of parallel.
-Scene slab_scene(float sigma_t)
-{
-    Scene scene;
-    scene.camera = front_camera(20, 20);
-    scene.camera.tan_half_fov_y = 0.01f;
-    Volume slab = test::constant_cube(11, 2.0f);
-    slab.density_scale = sigma_t;
-    slab.albedo = Spectrum(0.5f);
-    finalize(slab);
-    scene.media.volumes = {slab};
-    scene.lights = {PointLight{{0.0f, 5.0f, 0.0f}, Spectrum(1.0f)}};
-    return scene;
-}
-
 TEST(FrameStat, SlabHasItsTransmittanceAlphaAndDepth)
 {
     // 11 voxels 0.2 m apart: the reconstruction's integral along the axis is 2.2 m.
@@ -233,44 +183,6 @@ TEST(Frame, NonFiniteSamplesAreCountedAndBlack)
     const LayeredImage image = render(scene, options(2, 1, {}), &stats);
     EXPECT_EQ(stats.dropped_non_finite, 16 * 16 * 2);
     EXPECT_EQ(mean_of(image, "G"), 0.0);
-}
-
-TEST(Frame, PathsCutByTheBounceLimitAreCounted)
-{
-    FrameStats stats;
-    const Scene scene = slab_scene(0.7f);
-    (void)render(scene, options(4, 1, {}), &stats);
-    EXPECT_GT(stats.truncation.paths, 0);
-    EXPECT_LE(stats.truncation.paths, stats.paths);
-    (void)render(scene, options(4, 1000, {}), &stats);
-    EXPECT_EQ(stats.truncation.paths, 0);
-}
-
-/// In a white furnace what is missing is known: all paths that scatter more than n times carry
-/// weight 1 when they are cut, and the image of n - 1 events lacks just their light.
-TEST(Frame, WeightOfCutPathsIsTheLightThatFurnacesLack)
-{
-    Scene scene = slab_scene(1.5f);
-    scene.media.volumes[0].albedo = Spectrum(1.0f);
-    scene.environment = EnvironmentLight{Spectrum(1.0f), nullptr, glm::mat3(1.0f)};
-    scene.lights.clear();
-    for (const EstimatorKind estimator : {EstimatorKind::Path, EstimatorKind::Restir}) {
-        for (const IndirectReuse reuse : {IndirectReuse::Off, IndirectReuse::Spatial}) {
-            for (const int bounces : {2, 3, 5}) {
-                Options o = options(40, bounces - 1, {});
-                o.render.estimator = estimator;
-                o.render.restir.indirect_reuse = reuse;
-                const double brought = mean_of(render(scene, o), "G");
-                o.render.path.max_bounces = bounces;
-                FrameStats stats;
-                (void)render(scene, o, &stats);
-                const double weight = stats.truncation.weight / static_cast<double>(stats.paths);
-                EXPECT_NEAR(weight, 1.0 - brought, 0.02)
-                    << bounces << (estimator == EstimatorKind::Path ? " path" : " restir")
-                    << (reuse == IndirectReuse::Off ? "" : " reused");
-            }
-        }
-    }
 }
 
 TEST(Frame, WorkIsCountedTheSameForAnyThreads)
