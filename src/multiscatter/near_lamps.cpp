@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <variant>
 
 #include "core/sampling.h"
+#include "reference/equiangular.h"
 
 namespace mote {
 namespace {
@@ -12,27 +12,10 @@ namespace {
 /// Lamps tried per group.
 constexpr int picks = 4;
 /// Lamps less likely than this are some of many: each matters little, and places near them cost
-/// more than they bring (measured: 8 % of the efficiency with 1000 lamps).
+/// rays (measured with 1000 lamps: 4 % more time, and no less error).
 constexpr float least_pmf = 1.0f / 16;
 /// Largest radius of balls, in free paths around the vertices: beyond it, paths are dense enough.
 constexpr float free_paths = 1.0f;
-
-/// A lamp that is small from everywhere: where it is, and how large.
-struct SmallLamp {
-    Vec3 position{0.0f};
-    float radius = 0.0f;
-};
-
-std::optional<SmallLamp> small_lamp(const Light& light)
-{
-    if (const auto* point = std::get_if<PointLight>(&light))
-        return SmallLamp{point->position, 0.0f};
-    if (const auto* spot = std::get_if<SpotLight>(&light)) return SmallLamp{spot->position, 0.0f};
-    if (const auto* sphere = std::get_if<SphereLight>(&light)) {
-        return SmallLamp{sphere->position, sphere->radius};
-    }
-    return std::nullopt;
-}
 
 }  // namespace
 

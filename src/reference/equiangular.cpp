@@ -7,23 +7,6 @@
 namespace mote {
 namespace {
 
-/// Where lamps attract samples: a position and the size below which distance does not matter.
-struct Attractor {
-    Vec3 position{0.0f};
-    float radius = 0.0f;
-};
-
-std::optional<Attractor> attractor_of(const Light& light)
-{
-    if (const auto* point = std::get_if<PointLight>(&light))
-        return Attractor{point->position, 0.0f};
-    if (const auto* spot = std::get_if<SpotLight>(&light)) return Attractor{spot->position, 0.0f};
-    if (const auto* sphere = std::get_if<SphereLight>(&light)) {
-        return Attractor{sphere->position, sphere->radius};
-    }
-    return std::nullopt;
-}
-
 /// From lamps further away, all of the segment is about as far, and floats tell its distances apart
 /// no better than to 0.1 %: such lamps attract nothing.
 constexpr float least_angle = 1e-4f;
@@ -36,7 +19,7 @@ struct Equiangular {
     float theta1;
 };
 
-Equiangular make_equiangular(const CameraSegment& segment, const Attractor& lamp)
+Equiangular make_equiangular(const CameraSegment& segment, const SmallLamp& lamp)
 {
     const Vec3 to_lamp = lamp.position - segment.ray.o;
     const float nearest = glm::dot(to_lamp, segment.ray.d);
@@ -88,6 +71,17 @@ float exact_transmittance(const Media& media, const Ray& ray, float t)
 
 }  // namespace
 
+std::optional<SmallLamp> small_lamp(const Light& light)
+{
+    if (const auto* point = std::get_if<PointLight>(&light))
+        return SmallLamp{point->position, 0.0f};
+    if (const auto* spot = std::get_if<SpotLight>(&light)) return SmallLamp{spot->position, 0.0f};
+    if (const auto* sphere = std::get_if<SphereLight>(&light)) {
+        return SmallLamp{sphere->position, sphere->radius};
+    }
+    return std::nullopt;
+}
+
 std::optional<CameraSegment> make_camera_segment(const Media& media, const Ray& ray, float t_max)
 {
     Interval range{infinity, 0.0f};
@@ -110,7 +104,7 @@ FirstEvent make_first_event(const Media& media, const CameraSegment& segment, fl
 
 float equiangular_ratio(const TraceContext& context, const FirstEvent& event, int lamp)
 {
-    const auto attractor = attractor_of(context.scene.lights[static_cast<size_t>(lamp)]);
+    const auto attractor = small_lamp(context.scene.lights[static_cast<size_t>(lamp)]);
     if (!attractor) return 0.0f;
     const CameraSegment& segment = *event.segment;
     const float pmf = context.lights.pmf(LightSource::Lamp, lamp, segment.middle);
@@ -122,7 +116,7 @@ Spectrum estimate_equiangular(const TraceContext& context, const CameraSegment& 
     const std::optional<LightChoice> choice = context.lights.choose(segment.middle, rng);
     if (!choice || choice->source != LightSource::Lamp) return Spectrum(0.0f);
     const Light& light = context.scene.lights[static_cast<size_t>(choice->index)];
-    const std::optional<Attractor> attractor = attractor_of(light);
+    const std::optional<SmallLamp> attractor = small_lamp(light);
     if (!attractor) return Spectrum(0.0f);
     const Media& media = context.scene.media;
     const Ray& ray = segment.ray;

@@ -7,6 +7,15 @@
 
 namespace mote {
 
+/// A lamp that light grows towards: where it is, and the size below which distance does not matter.
+struct SmallLamp {
+    Vec3 position{0.0f};
+    float radius = 0.0f;  ///< [m]
+};
+
+/// Point, spot and sphere lights are small lamps; empty for all others.
+[[nodiscard]] std::optional<SmallLamp> small_lamp(const Light& light);
+
 /// The part of a camera ray where its first event may be.
 struct CameraSegment {
     Ray ray;

@@ -128,8 +128,7 @@ void add_indirect(const PassInputs& inputs, const PassKey& key, const PixelDomai
             const float choice = rng.uniform();
             ScatterEvent event{Vec3(0.0f), domain.wo(), domain.ray.time};
             Spectrum albedo(1.0f);
-            const bool surface_event = surface && !(tau < depth);
-            if (surface_event) {
+            if (surface && !(tau < depth)) {
                 event.x = surface->p;
                 event.surface = surface;
             } else {
@@ -147,7 +146,7 @@ void add_indirect(const PassInputs& inputs, const PassKey& key, const PixelDomai
             sample.indirect += weight * albedo * path.indirect;
             if (inputs.paths_bring_sky) sample.direct += weight * albedo * path.direct;
             sample.surface_indirect += weight * path.surface_indirect;
-            if (surface_event && inputs.surface_paths_bring_sky) {
+            if (event.surface && inputs.surface_paths_bring_sky) {
                 sample.surface_direct += weight * path.sky;
             }
             cut += weight * max_component(albedo) * path.cut;

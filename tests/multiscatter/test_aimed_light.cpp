@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "multiscatter/batches.h"
+#include "multiscatter/constant_guess.h"
 #include "reference/direct_light.h"
 #include "reference/path_tracer.h"
 #include "reference/trace_segment.h"
@@ -19,16 +20,6 @@ enum class Mistake {
     NoWeight,         ///< light that was sought counts in full where rays come upon it as well
     ForgottenChance,  ///< weights take every event to have sought
     OneEventTooMany   ///< the last event seeks, too
-};
-
-/// Says the same everywhere.
-class ConstantGuess final : public ShadowGuess {
-  public:
-    explicit ConstantGuess(float T) : T_(T) {}
-    [[nodiscard]] std::optional<float> to_infinity(Vec3, Vec3) const override { return T_; }
-
-  private:
-    float T_;
 };
 
 Scene forward_cloud(float g = 0.85f)
@@ -102,7 +93,7 @@ TEST(AimedLightStat, AnyGuessOfShadowsLeavesTheMean)
         EXPECT_GT(welch_test(setting.mean(nullptr, true, 2), exact).p, alarm) << max_bounces;
         uint32_t seed = 3;
         for (const float T : {0.0f, 0.7f, 1.0f, std::numeric_limits<float>::quiet_NaN()}) {
-            const ConstantGuess guess(T);
+            const test::ConstantGuess guess(T);
             // As a guess of shadows themselves it would have to be finite.
             if (std::isfinite(T)) {
                 EXPECT_GT(welch_test(setting.mean(&guess, true, seed++), exact).p, alarm) << T;

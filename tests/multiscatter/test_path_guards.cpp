@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "multiscatter/combine_paths.h"
+#include "multiscatter/constant_guess.h"
 #include "multiscatter/path_worlds.h"
 #include "multiscatter/scatter_along.h"
 #include "reference/aimed_light.h"
@@ -203,16 +204,6 @@ TEST(PathReservoirGuards, EmptyOnesAddConfidenceAlone)
     }
 }
 
-/// Says the same everywhere.
-class ConstantGuess final : public ShadowGuess {
-  public:
-    explicit ConstantGuess(float T) : T_(T) {}
-    [[nodiscard]] std::optional<float> to_infinity(Vec3, Vec3) const override { return T_; }
-
-  private:
-    float T_;
-};
-
 TEST(AimedLightGuards, BlackLightsAreNotSought)
 {
     const DistantLight black{Vec3(0.0f, 1.0f, 0.0f), Spectrum(0.0f)};
@@ -233,7 +224,7 @@ TEST(AimedLightGuards, FullShadowIsHardlyWorthARay)
     const LightSampler lights(scene, path);
     const AimedLights aims = find_aimed_lights(scene);
     const auto chance = [&](float T) {
-        const ConstantGuess guess(T);
+        const test::ConstantGuess guess(T);
         const TraceContext context{scene, lights, path, &guess, nullptr, &aims};
         const ScatterEvent event{Vec3(0.1f), -aims.direction[0], 0.0f,
                                  &scene.media.volumes[0].phase};

@@ -2,6 +2,7 @@
 
 #include "multiscatter/batches.h"
 #include "multiscatter/cached_shadows.h"
+#include "multiscatter/constant_guess.h"
 #include "reference/path_tracer.h"
 #include "restir/room_scenes.h"
 
@@ -9,16 +10,6 @@ namespace mote {
 namespace {
 
 constexpr double alarm = 1e-5;
-
-/// Says the same everywhere.
-class ConstantGuess final : public ShadowGuess {
-  public:
-    explicit ConstantGuess(float T) : T_(T) {}
-    [[nodiscard]] std::optional<float> to_infinity(Vec3, Vec3) const override { return T_; }
-
-  private:
-    float T_;
-};
 
 /// Mean of the light that an event scatters by way of others.
 MeanEstimate mean_with(const Scene& scene, const ShadowGuess* guess, uint32_t seed)
@@ -39,7 +30,7 @@ TEST(ShadowGuessStat, AnyGuessLeavesTheMean)
     const MeanEstimate exact = mean_with(scene, nullptr, 1);
     uint32_t seed = 2;
     for (const float T : {0.0f, 0.5f, 1.0f}) {
-        const ConstantGuess guess(T);
+        const test::ConstantGuess guess(T);
         EXPECT_GT(welch_test(mean_with(scene, &guess, seed++), exact).p, alarm) << T;
     }
 }
