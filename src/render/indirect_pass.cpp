@@ -62,6 +62,56 @@ PathVertex first_vertex(const ScatterEvent& event, Spectrum weight, int owner)
     return v;
 }
 
+/// Paths whose first event is in a medium; where pixels share paths, that event joins `first`.
+/// Returns the weight cut.
+float add_paths_from_media(const PassInputs& inputs, const TraceContext& context,
+                           const PixelDomain& domain, float lost, int owner, Rng& rng,
+                           std::vector<PathVertex>& first, FilmSample& sample)
+{
+    const float step = 1.0f / paths_worth(lost, inputs.domain.params.indirect_paths);
+    const float weight = lost * step;
+    float cut = 0.0f;
+    for (float u = rng.uniform() * step; u < 1.0f; u += step) {
+        const float tau = -std::log1p(-u * lost);
+        ScatterEvent event{Vec3(0.0f), domain.wo(), domain.ray.time};
+        const Spectrum albedo = medium_event(context.scene, domain, tau, rng.uniform(), event);
+        if (!event.phase) continue;
+        if (inputs.shares_paths) {
+            first.push_back(first_vertex(event, weight * albedo, owner));
+            continue;
+        }
+        const PathResult path = inputs.radiance
+                                    ? residual_light(context, *inputs.radiance, {}, event, rng)
+                                    : trace_after_event(context, event, rng);
+        sample.indirect += weight * albedo * path.indirect;
+        if (inputs.paths_bring_sky) sample.direct += weight * albedo * path.direct;
+        sample.surface_indirect += weight * albedo * path.surface_indirect;
+        cut += weight * max_component(albedo) * path.cut;
+    }
+    return cut;
+}
+
+/// Paths that a surface in view scatters first, for the share of light that media let through.
+/// Returns the weight cut.
+float add_paths_from_surface(const PassInputs& inputs, const TraceContext& context,
+                             const SurfaceVertex& surface, const PixelDomain& domain, float share,
+                             Rng& rng, FilmSample& sample)
+{
+    const float step = 1.0f / paths_worth(share, inputs.domain.params.surface.indirect_paths);
+    const float weight = share * step;
+    ScatterEvent event{surface.p, domain.wo(), domain.ray.time};
+    event.surface = &surface;
+    float cut = 0.0f;
+    for (float u = rng.uniform() * step; u < 1.0f; u += step) {
+        const PathResult path = trace_after_event(context, event, rng);
+        sample.indirect += weight * path.indirect;
+        sample.surface_indirect += weight * path.surface_indirect;
+        if (inputs.surface_paths_bring_sky) sample.surface_direct += weight * path.sky;
+        cut += weight * path.cut;
+    }
+    return cut;
+}
+
 }  // namespace
 
 float paths_worth(float lost, int count)
@@ -105,52 +155,27 @@ void add_indirect(const PassInputs& inputs, const PassKey& key, const PixelDomai
                   FilmSample& sample, PassCounts& counts)
 {
     const float depth = domain.bins.depth();
-    const float lost = surface ? 1.0f : -std::expm1(-depth);
+    const float lost = -std::expm1(-depth);
+    const float reaches_surface = surface ? std::exp(-depth) : 0.0f;
     if (inputs.render.path.max_bounces < 2) {
-        counts.truncation.add(lost);
+        counts.truncation.add(lost + reaches_surface);
         return;
     }
-    const Scene& scene = *inputs.domain.scene;
-    if (inputs.nodes) {
-        sample.indirect = scatter_along(*inputs.nodes, scene.media, domain.ray, domain.bins);
-    }
-    if (inputs.path_light) sample.indirect = inputs.path_light->at(key.x, key.y);
-    const bool surface_only = inputs.nodes || inputs.path_light;
+    Rng rng = pass_rng(inputs, key, Stream::Indirect);
+    const CachedGuesses guesses(*inputs.domain.caches);
+    const TraceContext context = context_with(inputs, guesses);
     float cut = 0.0f;
-    if (lost > 0.0f && (surface || !surface_only)) {
-        Rng rng = pass_rng(inputs, key, Stream::Indirect);
-        const float step = 1.0f / paths_worth(lost, inputs.domain.params.indirect_paths);
-        const float weight = lost * step;
-        const CachedGuesses guesses(*inputs.domain.caches);
-        const TraceContext context = context_with(inputs, guesses);
-        for (float u = rng.uniform() * step; u < 1.0f; u += step) {
-            const float tau = -std::log1p(-u * lost);
-            const float choice = rng.uniform();
-            ScatterEvent event{Vec3(0.0f), domain.wo(), domain.ray.time};
-            Spectrum albedo(1.0f);
-            if (surface && !(tau < depth)) {
-                event.x = surface->p;
-                event.surface = surface;
-            } else {
-                if (surface_only) continue;
-                albedo = medium_event(scene, domain, tau, choice, event);
-                if (!event.phase) continue;
-                if (inputs.shares_paths) {
-                    first.push_back(first_vertex(event, weight * albedo, owner));
-                    continue;
-                }
-            }
-            const PathResult path = inputs.radiance && event.phase
-                                        ? residual_light(context, *inputs.radiance, {}, event, rng)
-                                        : trace_after_event(context, event, rng);
-            sample.indirect += weight * albedo * path.indirect;
-            if (inputs.paths_bring_sky) sample.direct += weight * albedo * path.direct;
-            sample.surface_indirect += weight * path.surface_indirect;
-            if (event.surface && inputs.surface_paths_bring_sky) {
-                sample.surface_direct += weight * path.sky;
-            }
-            cut += weight * max_component(albedo) * path.cut;
-        }
+    if (inputs.nodes) {
+        sample.indirect =
+            scatter_along(*inputs.nodes, inputs.domain.scene->media, domain.ray, domain.bins);
+    } else if (inputs.path_light) {
+        sample.indirect = inputs.path_light->at(key.x, key.y);
+    } else if (lost > 0.0f) {
+        cut += add_paths_from_media(inputs, context, domain, lost, owner, rng, first, sample);
+    }
+    if (reaches_surface > 0.0f) {
+        cut +=
+            add_paths_from_surface(inputs, context, *surface, domain, reaches_surface, rng, sample);
     }
     counts.truncation.add(cut);
 }

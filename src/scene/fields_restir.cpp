@@ -67,12 +67,13 @@ void describe(FieldVisitor& v, RestirParams& restir)
                   "media where these are good guesses, few of which are corrected exactly; 0: 8",
            .range = between(0, 64)},
           restir.environment_rays);
-    visit(
-        v,
-        {.key = "indirect_paths",
-         .doc = "Paths per pixel and pass for light scattered twice and more, if `bounces` allows",
-         .range = between(1, 256)},
-        restir.indirect_paths);
+    visit(v,
+          {.key = "indirect_paths",
+           .doc =
+               "Paths per pixel and pass for light scattered twice and more, first in a medium, if "
+               "`bounces` allows",
+           .range = between(1, 256)},
+          restir.indirect_paths);
     visit_choice(
         v,
         {.key = "indirect",
@@ -168,6 +169,12 @@ void describe(FieldVisitor& v, SurfaceRestirParams& surface)
            .doc = "Directions from the material tried besides",
            .range = between(1, 64)},
           surface.bsdf_candidates);
+    visit(v,
+          {.key = "indirect_paths",
+           .doc = "Paths per pixel and pass for light that surfaces in view pass on from what is "
+                  "lit itself, if `bounces` allows",
+           .range = between(1, 256)},
+          surface.indirect_paths);
     visit(v,
           {.key = "cap",
            .doc = "Most confidence that history may have",

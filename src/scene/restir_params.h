@@ -112,6 +112,7 @@ struct SpatialParams {
 struct SurfaceRestirParams {
     int light_candidates = 8;  ///< lamps tried per pixel and pass, [1, 256]
     int bsdf_candidates = 1;   ///< directions tried besides, [1, 64]
+    int indirect_paths = 6;    ///< paths of two and more events per pass, [1, 256]
     float cap = 20.0f;         ///< most confidence a history may have [passes]
     int neighbours = 5;        ///< [0, 32]; two shadow rays each
     float radius_px = 10.0f;   ///< of the disk they are taken from [px]
@@ -136,7 +137,7 @@ struct RestirParams {
     IndirectLight indirect = IndirectLight::Auto;
     IndirectReuse indirect_reuse = IndirectReuse::Off;
     IndirectSuffix indirect_suffix = IndirectSuffix::Traced;
-    int indirect_paths = 16;    ///< paths of two and more events per pass
+    int indirect_paths = 16;    ///< paths of two and more events per pass, first in a medium
     float node_paths = 1.0f;    ///< previews: paths from nodes per pass and pixel of smoke
     float node_spacing = 0.0f;  ///< previews: [m]; 0: by density and pixel size
     bool corrections = true;    ///< false: the closed form alone, a fast biased preview
