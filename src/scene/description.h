@@ -59,7 +59,7 @@ struct RenderDescription {
     int height = 360;
     int samples = 16;  ///< per pixel
     uint32_t seed = 0;
-    EstimatorKind estimator = EstimatorKind::Path;
+    EstimatorKind estimator = EstimatorKind::Restir;
     PathTracerParams path;  ///< bounces, roulette, transmittance, light choice
     RestirParams restir;
     MarchParams march;

@@ -129,7 +129,8 @@ TEST(RestirPresets, EstimatorTextsTellReuseAndWhyImagesAreBiased)
                                               preset + "\"\n" + more)
                                   .render);
     };
-    EXPECT_EQ(estimator_text({}), "path, unbiased");
+    EXPECT_EQ(estimator_text({.estimator = EstimatorKind::Path}), "path, unbiased");
+    EXPECT_EQ(estimator_text({}), "restir, reuse auto, unbiased");
     EXPECT_EQ(text_of("default"), "restir, reuse auto, unbiased");
     EXPECT_EQ(text_of("textbook"), "restir, reuse both, unbiased");
     EXPECT_EQ(text_of("default", "reuse = \"temporal\"\n"), "restir, reuse temporal, unbiased");

@@ -20,6 +20,7 @@ struct Way {
 [[nodiscard]] inline Way path_way(int max_bounces = 1, int samples = 2)
 {
     Way way{"path", {}};
+    way.render.estimator = EstimatorKind::Path;
     way.render.samples = samples;
     way.render.path.max_bounces = max_bounces;
     way.render.path.transmittance = TransmittanceKind::Exact;
