@@ -35,8 +35,14 @@ class Gatherer {
     void gather_group(size_t g)
     {
         const VertexGroup& found = level_.found[g];
-        if (found.count == 0) return;
         const std::span<const int> members = level_.members(level_.groups[g]);
+        if (is_first()) {
+            for (const int i : members) {
+                const PathVertex& v = level_.vertices[static_cast<size_t>(i)];
+                light_[static_cast<size_t>(v.from)] += v.weight * v.known;
+            }
+        }
+        if (found.count == 0) return;
         shares_.assign(members.size(), 0.0f);
         fill_lanes(level_.vertices, members, shares_, lanes_);
         const size_t width = lanes_.width();

@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "multiscatter/mean_radiance.h"
 #include "multiscatter/vertex_groups.h"
 #include "reference/trace_context.h"
 #include "restir/coarse_extinction.h"
@@ -44,7 +45,8 @@ struct SharingContext {
     float time = 0.0f;                   ///< of all rays
     WalkCounts& counts;
     float& cut;  ///< weight, in the image, that paths had left when max_bounces cut them
-    float near_share = 0.0f;  ///< see PathSharing
+    float near_share = 0.0f;              ///< see PathSharing
+    const MeanRadiance* known = nullptr;  ///< see PathSharing
 };
 
 }  // namespace mote

@@ -30,6 +30,9 @@ struct PathVertex {
     int from = 0;
     /// Of the transmittance to the vertex before: log of assumed over true.
     float log_excess = 0.0f;
+    /// Of first vertices: what is known of the light that their own paths have found, over the
+    /// number of these that was to be expected.
+    Spectrum known{0.0f};
     IncidentSample arrivals[most_arrivals];
     int arrival_count = 0;
 

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "core/parallel.h"
 #include "core/sampling.h"
 #include "multiscatter/next_event.h"
 #include "restir/cache_stats.h"
+#include "volumes/media_at.h"
 #include "volumes/media_extent.h"
 
 namespace mote {
@@ -14,9 +16,10 @@ namespace {
 
 constexpr size_t grain = 16;  ///< nodes per task
 
-/// What arrives at a node, by one direction in each of `count` strata of the sphere.
+/// What arrives at a node, by one direction in each of `count` strata of the sphere. `goes_on`: the
+/// mean weight with which their walks go on.
 RadianceCache::Node trace_node(const TraceContext& context, Vec3 x, int count, uint32_t slot,
-                               uint32_t seed)
+                               uint32_t seed, float& goes_on)
 {
     constexpr float golden = 0.618034f;  // turns from one stratum to the next are spread evenly
     const auto frame = static_cast<uint32_t>(context.scene.frame);
@@ -32,6 +35,7 @@ RadianceCache::Node trace_node(const TraceContext& context, Vec3 x, int count, u
         const TracedSegment segment = trace_segment(context, ray, false, rng);
         const std::optional<NextEvent> next = next_event(context.scene, ray.ray, segment);
         if (!next) continue;
+        goes_on += max_component(next->albedo) / static_cast<float>(count);
         float cut = 0.0f;
         const Spectrum light = next->albedo * light_of_event(context, next->event, 2, rng, cut) /
                                (sample_sphere_pdf() * static_cast<float>(count));
@@ -52,11 +56,25 @@ float choose_spacing(const Media& media, int nodes)
     return std::cbrt(extent.x * extent.y * extent.z / static_cast<float>(nodes));
 }
 
+/// Events of walks that start where media collide most, as if all events were alike.
+float mean_events(const Media& media, const SmokeLattice& lattice, std::span<const float> goes_on)
+{
+    double collisions = 0.0;
+    double survived = 0.0;
+    for (size_t i = 1; i < goes_on.size(); ++i) {
+        const auto sigma_t =
+            static_cast<double>(sigma_t_at(media, lattice.position(lattice.nodes[i]), cache_time));
+        collisions += sigma_t;
+        survived += sigma_t * static_cast<double>(goes_on[i]);
+    }
+    if (!(collisions > 0.0)) return 1.0f;
+    return static_cast<float>(1.0 / std::max(1.0 - survived / collisions, 1e-6));
+}
+
 }  // namespace
 
-RadianceCacheParams share_of_paths(int64_t paths, uint32_t seed)
+RadianceCacheParams share_of_paths(int64_t paths, int share, uint32_t seed)
 {
-    constexpr int64_t share = 10;
     constexpr int64_t fewest = 16;  // directions that a node is worth having with
     const int64_t nodes = std::clamp<int64_t>(paths / (share * fewest), 64, 4096);
     const int64_t directions = std::clamp<int64_t>(paths / (share * nodes), fewest, 256);
@@ -71,13 +89,15 @@ RadianceCache make_radiance_cache(const TraceContext& context, const RadianceCac
     cache.lattice = make_smoke_lattice(media, choose_spacing(media, params.nodes), params.nodes);
     cache.incident.resize(cache.lattice.nodes.size());
     cache.incident[0].fill(Spectrum(0.0f));
+    std::vector<float> goes_on(cache.incident.size(), 0.0f);
     parallel_for(cache.incident.size() - 1, grain, [&](size_t begin, size_t end) {
         for (size_t i = begin + 1; i < end + 1; ++i) {
             cache.incident[i] =
                 trace_node(context, cache.lattice.position(cache.lattice.nodes[i]),
-                           params.directions, static_cast<uint32_t>(i), params.seed);
+                           params.directions, static_cast<uint32_t>(i), params.seed, goes_on[i]);
         }
     });
+    cache.mean_events = mean_events(media, cache.lattice, goes_on);
     cache.cpu_seconds = process_cpu_seconds() - start;
     return cache;
 }

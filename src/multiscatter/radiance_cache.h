@@ -18,6 +18,7 @@ struct RadianceCache {
 
     SmokeLattice lattice;
     std::vector<Node> incident;  ///< per slot [W/(m^2 sr)]; slot 0 is black
+    float mean_events = 0.0f;    ///< estimate, of walks that start anywhere in the media
     double cpu_seconds = 0.0;
 };
 
@@ -28,9 +29,9 @@ struct RadianceCacheParams {
     uint32_t seed = 0;
 };
 
-/// A tenth of what a frame spends that traces so many paths for its pixels: few nodes for small
-/// ones.
-[[nodiscard]] RadianceCacheParams share_of_paths(int64_t paths, uint32_t seed);
+/// One part in `share` of what a frame spends that traces so many paths for its pixels: few nodes
+/// for small ones.
+[[nodiscard]] RadianceCacheParams share_of_paths(int64_t paths, int share, uint32_t seed);
 
 /// Traces the nodes' paths, in parallel. max_bounces counts from a node as from a pixel's first
 /// event.

@@ -22,6 +22,13 @@ struct GroupScratch {
     std::vector<float> way_shares;
 };
 
+/// What is known of the light that arrives at a place in a medium, from every direction alike; so
+/// the medium scatters just as much, albedo apart.
+Spectrum known_light(const SharingContext& context, Vec3 x)
+{
+    return context.known ? context.known->at(x) : Spectrum(0.0f);
+}
+
 class PathSender {
   public:
     PathSender(const SharingContext& context, int event_count, bool is_first, PathLevel& level,
@@ -46,8 +53,9 @@ class PathSender {
             // One place in every stratum of the shares: whole paths go where they are due.
             float left = is_first_ ? rng_.uniform() : 0.5f;
             for (size_t k = 0; k < members.size(); ++k) {
-                left += scratch_.shares[k] * static_cast<float>(members.size());
-                for (; left >= 1.0f; left -= 1.0f) send_path(members, members[k]);
+                const float expected = scratch_.shares[k] * static_cast<float>(members.size());
+                left += expected;
+                for (; left >= 1.0f; left -= 1.0f) send_path(members, members[k], expected);
             }
             near_.for_each_point(rng_, [&](Vec3 y) { look_at(members, y); });
         }
@@ -103,18 +111,18 @@ class PathSender {
         connect(members, found, sigma_t);
     }
 
-    void send_path(std::span<const int> members, int from)
+    /// `expected`: paths that this vertex sends in the mean.
+    void send_path(std::span<const int> members, int from, float expected)
     {
         PathVertex& v = level_.vertices[static_cast<size_t>(from)];
         const Vec3 wi = sample_phase(v.lobe, v.wo, rng_.uniform2());
         const float pdf = phase_pdf(v.lobe, v.wo, wi);
         LightRay light_ray{Ray{v.x, wi, context_.time}, pdf, false};
         const TracedSegment segment = trace_segment(context_.trace, light_ray, false, rng_);
-        // First vertices' light of one event comes from elsewhere.
-        if (!is_first_) v.add({wi, segment.light() / pdf});
         PathVertex found;
         found.from = from;
         found.carried = is_first_ ? path_weight_ : v.carried;
+        Spectrum known(0.0f);
         if (segment.collision) {
             const Collision& c = *segment.collision;
             const Volume& volume =
@@ -122,15 +130,20 @@ class PathSender {
             found.x = light_ray.ray.at(c.t);
             found.phase = &volume.phase;
             found.weight = albedo_at(volume, c.p_object);
-            if (!(max_component(found.weight) > 0.0f)) return;
             found.carried *= max_component(found.weight);
+            known = found.weight * known_light(context_, found.x);
         } else if (segment.vertex) {
             found.x = segment.vertex->p;
             found.surface = static_cast<int>(next_.surfaces.size());
             next_.surfaces.push_back(*segment.vertex);
-        } else {
-            return;
         }
+        if (is_first_) {
+            v.known += known / expected;  // light of one event comes from elsewhere
+        } else {
+            v.add({wi, (segment.light() + known - known_light(context_, v.x)) / pdf});
+        }
+        if (!found.phase && found.surface < 0) return;
+        if (!(max_component(found.weight) > 0.0f)) return;
         const float sigma_t = found.surface < 0 && near_.density(found.x) > 0.0f
                                   ? sigma_t_at(context_.trace.scene.media, found.x, context_.time)
                                   : 0.0f;
@@ -287,7 +300,8 @@ void follow_own_path(const SharingContext& context, const ScatterEvent& event, i
     float cut = 0.0f;
     const Spectrum arrives = trace_scattered_ray(trace, light_ray, event_count, aim, rng, cut);
     context.cut += v.carried * max_component(s->scattering.f) / pdf * cut;
-    v.add({s->wi, arrives / pdf});
+    const Spectrum known = event.surface ? Spectrum(0.0f) : known_light(context, event.x);
+    v.add({s->wi, (arrives - known) / pdf});
 }
 
 }  // namespace mote

@@ -1,6 +1,7 @@
 #include "multiscatter/shared_paths.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "multiscatter/gather_light.h"
 #include "multiscatter/near_lamps.h"
@@ -8,6 +9,22 @@
 #include "volumes/media_extent.h"
 
 namespace mote {
+
+PathSharing sharing_for(const Media& media, float mean_events)
+{
+    constexpr float many_events = 64.0f;
+    constexpr float narrow_lobe = 0.8f;
+    const bool is_narrow =
+        std::any_of(media.volumes.begin(), media.volumes.end(), [](const Volume& volume) {
+            const Phase& phase = volume.phase;
+            return std::abs(phase.g + phase.weight_b * (phase.g_b - phase.g)) >= narrow_lobe;
+        });
+    PathSharing sharing;
+    if (mean_events < many_events || !is_narrow) return sharing;
+    sharing.group_size *= 2;
+    ++sharing.levels;
+    return sharing;
+}
 
 void share_paths(const TraceContext& trace, const CoarseExtinction& extinction,
                  const PathSharing& sharing, std::vector<PathVertex> first, Rng& rng,
@@ -21,7 +38,8 @@ void share_paths(const TraceContext& trace, const CoarseExtinction& extinction,
                                  cache_time,
                                  counts,
                                  cut,
-                                 has_small_lamps(trace.scene) ? sharing.near_share : 0.0f};
+                                 has_small_lamps(trace.scene) ? sharing.near_share : 0.0f,
+                                 sharing.known};
     const int last = std::min(sharing.levels, trace.params.max_bounces - 1);
     std::vector<PathLevel> levels(static_cast<size_t>(last) + 1);
     levels.front().vertices = std::move(first);

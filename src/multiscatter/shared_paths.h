@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/rng.h"
+#include "multiscatter/mean_radiance.h"
 #include "multiscatter/path_vertex.h"
 #include "reference/trace_context.h"
 #include "restir/coarse_extinction.h"
@@ -16,7 +17,14 @@ struct PathSharing {
     int group_size = 64;  ///< vertices that share their paths; a quarter where there are surfaces
     int levels = 2;  ///< of vertices, from the first ones on; behind them each has its own path
     float near_share = 0.25f;  ///< places near lamps that are looked at besides, per path
+    const MeanRadiance* known = nullptr;  ///< what is not shared, as it is known; null: nothing
 };
+
+/// How far sharing pays. Where walks are long (`mean_events`) and lobes narrow, so that few of a
+/// group look at what one of them finds: twice the group and a third level. Measured, variance
+/// times time, 128 x 72 pixels cut out of 1280 x 720: cloud of optical depth 40, albedo 0.999,
+/// g = 0.85: 0.69; but with g = 0: 1.1, with albedo 0.95: 1.4.
+[[nodiscard]] PathSharing sharing_for(const Media& media, float mean_events);
 
 /// Light scattered twice and more, at the scattering events on the rays of a tile's pixels. Each
 /// vertex sends one path on to a second one; vertices close together form groups, and all of a

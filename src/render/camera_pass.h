@@ -4,6 +4,7 @@
 #include "multiscatter/path_vertex.h"
 #include "multiscatter/radiance_cache.h"
 #include "multiscatter/scatter_nodes.h"
+#include "multiscatter/shared_paths.h"
 #include "render/aov.h"
 #include "render/film.h"
 #include "render/pixel_split.h"
@@ -36,10 +37,10 @@ struct PassInputs {
     const FrameDomain& domain;
     const RenderDescription& render;
     AovSet aovs;
-    const LightSampler& lights;           ///< for paths of many events; empty if there are none
-    const ScatterNodes* nodes = nullptr;  ///< for previews; null: none
-    bool shares_paths = false;            ///< of many events: see shares_paths()
-    bool paths_bring_sky = false;         ///< see paths_bring_sky()
+    const LightSampler& lights;            ///< for paths of many events; empty if there are none
+    const ScatterNodes* nodes = nullptr;   ///< for previews; null: none
+    const PathSharing* sharing = nullptr;  ///< of paths of many events; null: see shares_paths()
+    bool paths_bring_sky = false;          ///< see paths_bring_sky()
     bool surface_paths_bring_sky = false;
     Buffer2D<Spectrum>* path_light = nullptr;  ///< of reused paths, by pass; null: none are reused
     AimedLights aims{};                        ///< of paths of many events

@@ -7,7 +7,6 @@
 #include "multiscatter/residual_walk.h"
 #include "multiscatter/scatter_along.h"
 #include "multiscatter/shared_paths.h"
-#include "multiscatter/still_scene.h"
 #include "reference/path_tracer.h"
 #include "volumes/media_at.h"
 
@@ -39,17 +38,6 @@ TraceContext context_with(const PassInputs& inputs, const CachedGuesses& guesses
             &guesses.shadows,     guesses.guide(), &inputs.aims};
 }
 
-/// Whether there is a constant environment that paths find by scattered rays alone, and go on until
-/// they do.
-bool finds_sky_by_paths(const Scene& scene, const RenderDescription& render)
-{
-    // Fewer events cut paths that have not yet found it.
-    constexpr int enough_bounces = 8;
-    return scene.environment && !scene.environment->map && render.restir.corrections &&
-           render.restir.control_variate && render.path.max_bounces >= enough_bounces &&
-           render.path.light_strategy == LightStrategy::Auto;
-}
-
 PathVertex first_vertex(const ScatterEvent& event, Spectrum weight, int owner)
 {
     PathVertex v;
@@ -76,7 +64,7 @@ float add_paths_from_media(const PassInputs& inputs, const TraceContext& context
         ScatterEvent event{Vec3(0.0f), domain.wo(), domain.ray.time};
         const Spectrum albedo = medium_event(context.scene, domain, tau, rng.uniform(), event);
         if (!event.phase) continue;
-        if (inputs.shares_paths) {
+        if (inputs.sharing) {
             first.push_back(first_vertex(event, weight * albedo, owner));
             continue;
         }
@@ -120,36 +108,6 @@ float paths_worth(float lost, int count)
     return worth > 1.0f ? std::round(worth) : worth;  // of 2.5 paths, 2 or 3 would be noise
 }
 
-bool shares_paths(const Scene& scene, const RenderDescription& render)
-{
-    const RestirParams& params = render.restir;
-    const bool may_share =
-        params.indirect == IndirectLight::Auto || params.indirect == IndirectLight::Shared;
-    return params.indirect_reuse == IndirectReuse::Off && may_share && params.corrections &&
-           render.path.max_bounces > 1 && is_still_but_for_camera(scene) &&
-           !paths_bring_sky(scene, render);
-}
-
-bool corrects_cache(const Scene& scene, const RenderDescription& render)
-{
-    return render.restir.indirect == IndirectLight::Cached && render.path.max_bounces > 1 &&
-           media_in_view(scene);
-}
-
-bool paths_bring_sky(const Scene& scene, const RenderDescription& render)
-{
-    const RestirParams& params = render.restir;
-    return finds_sky_by_paths(scene, render) && params.indirect == IndirectLight::Auto &&
-           params.indirect_reuse == IndirectReuse::Off && scene.lights.empty() && !scene.surfaces &&
-           std::none_of(scene.media.volumes.begin(), scene.media.volumes.end(),
-                        [](const Volume& volume) { return volume.emission_params.is_on(); });
-}
-
-bool surface_paths_bring_sky(const Scene& scene, const RenderDescription& render)
-{
-    return scene.surfaces && finds_sky_by_paths(scene, render);
-}
-
 void add_indirect(const PassInputs& inputs, const PassKey& key, const PixelDomain& domain,
                   const SurfaceVertex* surface, int owner, std::vector<PathVertex>& first,
                   FilmSample& sample, PassCounts& counts)
@@ -188,7 +146,7 @@ std::vector<Spectrum> light_shared_paths(const PassInputs& inputs, const PassKey
     Rng rng = pass_rng(inputs, key, Stream::SharedPaths);
     const CachedGuesses guesses(*inputs.domain.caches);
     float cut = 0.0f;
-    share_paths(context_with(inputs, guesses), *inputs.domain.caches->extinction, {},
+    share_paths(context_with(inputs, guesses), *inputs.domain.caches->extinction, *inputs.sharing,
                 std::move(first), rng, light, counts.light_rays, cut);
     first.clear();
     if (cut > 0.0f) {

@@ -4,8 +4,7 @@
 #include <mutex>
 
 #include "core/parallel.h"
-#include "multiscatter/cached_lights.h"
-#include "render/indirect_pass.h"
+#include "render/indirect_plan.h"
 #include "render/part_pass.h"
 #include "render/restir_reuse.h"
 #include "render/seen_lamps.h"
@@ -86,38 +85,27 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
     std::optional<Change> change;
     if (history.last.scene) change = change_between(history.last, domain);
     const ReusePlan plan = plan_reuse(domain, render, change);
-    std::optional<ScatterNodes> nodes;
-    const bool is_preview = !render.restir.corrections;
-    if (is_preview && can_have_scatter_nodes(scene, render.path)) {
-        const CachedGuesses guesses(*history.caches);
-        nodes = make_scatter_nodes(
-            {scene, lights, render.path, &guesses.shadows, guesses.guide()},
-            {render.restir.node_paths, render.restir.node_spacing, render.samples, render.seed});
-        stats.cache_cpu_seconds += nodes->cpu_seconds;
-    }
     const AimedLights aims = find_aimed_lights(scene);
-    std::optional<RadianceCache> radiance;
-    if (!nodes && !plan.paths && corrects_cache(scene, render)) {
-        const CachedGuesses guesses(*history.caches);
-        radiance = make_radiance_cache(
-            {scene, lights, render.path, &guesses.shadows, guesses.guide(), &aims},
-            share_of_paths(pixel_passes(render) * render.restir.indirect_paths, render.seed));
-        stats.cache_cpu_seconds += radiance->cpu_seconds;
-    }
+    const bool is_same = change && !(change->media || change->lights || change->surfaces);
+    IndirectGuesses guesses =
+        guess_indirect({scene, render, lights, *history.caches, aims, plan.paths,
+                        history.known ? &*history.known : nullptr, is_same});
+    if (guesses.known) guesses.sharing->known = &*guesses.known;
+    stats.cache_cpu_seconds += guesses.cpu_seconds;
     Buffer2D<Spectrum> path_light;
     if (plan.paths) path_light = {scene.camera.width, scene.camera.height};
     const PassInputs inputs{domain,
                             render,
                             aovs,
                             lights,
-                            nodes ? &*nodes : nullptr,
-                            shares && history.caches->extinction,
+                            guesses.nodes ? &*guesses.nodes : nullptr,
+                            guesses.sharing ? &*guesses.sharing : nullptr,
                             brings_sky,
                             surfaces_bring_sky,
                             plan.paths ? &path_light : nullptr,
                             aims,
                             find_split_pixels(scene, domain.params.edge_strata),
-                            radiance ? &*radiance : nullptr};
+                            guesses.radiance ? &*guesses.radiance : nullptr};
     PassCounts counts;
     bool finished = false;
     if (plan.reuses_samples()) {
@@ -137,6 +125,7 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
                                       keeps_passes ? &history.pixels : nullptr);
     }
     if (!plan.paths) history.paths = {};
+    history.known = keeps_history ? std::move(guesses.known) : std::nullopt;
     history.last = keeps_history ? domain : FrameDomain{};
     stats.truncation = counts.truncation;
     stats.camera_rays = counts.bins.rays + static_cast<int64_t>(counts.lamps.rays);

@@ -20,8 +20,9 @@ struct FrameHistory::Impl {
     FinishedPass before;         ///< its last pass, if that kept samples
     Buffer2D<PixelFilm> pixels;  ///< all passes since something changed, if they are accumulated
     FinishedPaths paths;         ///< of light of many events, if paths are reused
-    bool is_last = false;        ///< no frame follows
-    MarchHistory march;          ///< of the ray marcher
+    std::optional<MeanRadiance> known;  ///< of the frames before, if samples may be reused
+    bool is_last = false;               ///< no frame follows
+    MarchHistory march;                 ///< of the ray marcher
 };
 
 /// All passes of a frame by the ReSTIR estimator; builds the light caches, or takes those of the

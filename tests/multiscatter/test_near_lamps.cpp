@@ -5,14 +5,10 @@
 
 #include <gtest/gtest.h>
 
-#include "multiscatter/batches.h"
 #include "multiscatter/gather_light.h"
 #include "multiscatter/near_lamps.h"
 #include "multiscatter/send_paths.h"
-#include "multiscatter/shared_paths.h"
-#include "reference/path_tracer.h"
-#include "restir/scenes.h"
-#include "volumes/media_extent.h"
+#include "multiscatter/sharing.h"
 
 namespace mote {
 namespace {
@@ -33,30 +29,13 @@ struct LampInSmoke {
         scene.environment.reset();
         scene.media.volumes[0].phase = {0.3f};
         lights = LightSampler(scene, path);
-        extinction = make_coarse_extinction(scene.media, find_smoke_cells(scene.media, 4.0f, 1000));
-        for (uint32_t i = 0; i < 16; ++i) {
-            Rng rng(11, 0, Stream::Test, i, 0);
-            PathVertex v;
-            v.x = Vec3(0.1f, 0.05f, 0.1f) + 0.1f * (rng.uniform3() - Vec3(0.5f));
-            v.wo = glm::normalize(Vec3(0.5f, 0.4f, 3.2f) - v.x);
-            v.phase = &scene.media.volumes[0].phase;
-            v.lobe = *v.phase;
-            v.weight = 0.2f + rng.uniform3();
-            first.push_back(v);
-        }
+        extinction = test::extinction_of(scene.media);
+        first = test::first_vertices(scene, 16, 0.1f);
     }
 
     [[nodiscard]] TraceContext trace() const { return {scene, lights, path}; }
 
-    [[nodiscard]] Spectrum alone(Rng& rng) const
-    {
-        Spectrum sum(0.0f);
-        for (const PathVertex& v : first) {
-            const ScatterEvent event{v.x, v.wo, cache_time, v.phase};
-            sum += v.weight * trace_after_event(trace(), event, rng).indirect;
-        }
-        return sum;
-    }
+    [[nodiscard]] Spectrum alone(Rng& rng) const { return test::light_alone(trace(), first, rng); }
 
     /// `of_places`: their light, times as bright as it should be.
     [[nodiscard]] Spectrum shared(float near_share, Rng& rng, float of_places = 1.0f) const

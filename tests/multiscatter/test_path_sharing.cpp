@@ -3,17 +3,17 @@
 
 #include <gtest/gtest.h>
 
-#include "multiscatter/batches.h"
 #include "multiscatter/gather_light.h"
 #include "multiscatter/send_paths.h"
-#include "multiscatter/shared_paths.h"
-#include "reference/path_tracer.h"
+#include "multiscatter/sharing.h"
 #include "restir/room_scenes.h"
-#include "restir/scenes.h"
-#include "volumes/media_extent.h"
 
 namespace mote {
 namespace {
+
+using test::cloud;
+using test::compare_with_alone;
+using test::Sharing;
 
 constexpr double alarm = 1e-5;  // false alarms, each comparison
 
@@ -26,119 +26,51 @@ enum class Mistake {
     OneEventTooMany  ///< light that the first vertices' own rays meet counts too
 };
 
-/// A scene, and first vertices in it: some close together, some not.
-struct Sharing {
-    Scene scene;
-    PathTracerParams path;
-    LightSampler lights;
-    CoarseExtinction extinction;
-    AimedLights aims;
-    std::vector<PathVertex> first;
-
-    Sharing(Scene s, int max_bounces, float spread)
-        : scene(std::move(s)),
-          path{.max_bounces = max_bounces},
-          lights(scene, path),
-          extinction(
-              make_coarse_extinction(scene.media, find_smoke_cells(scene.media, 4.0f, 1000))),
-          aims(find_aimed_lights(scene))
-    {
-        for (uint32_t i = 0; i < 6; ++i) {
-            Rng rng(11, 0, Stream::Test, i, 0);
-            PathVertex v;
-            v.x = Vec3(0.1f, 0.05f, 0.1f) + spread * (rng.uniform3() - Vec3(0.5f));
-            v.wo = glm::normalize(Vec3(0.5f, 0.4f, 3.2f) - v.x);
-            v.phase = &scene.media.volumes[0].phase;
-            v.lobe = *v.phase;
-            v.weight = 0.2f + rng.uniform3();
-            first.push_back(v);
+/// One level of it, open to mistakes.
+Spectrum shared_with(const Sharing& setting, Mistake mistake, Rng& rng)
+{
+    const std::vector<PathVertex>& first = setting.first;
+    WalkCounts counts;
+    float cut = 0.0f;
+    const TraceContext context = setting.trace();
+    const SharingContext sharing{context, setting.extinction, 64, cache_time, counts, cut};
+    PathLevel level;
+    PathLevel next;
+    level.vertices = first;
+    send_paths(sharing, 1, mistake != Mistake::OneEventTooMany, level, next, rng);
+    Spectrum extra(0.0f);
+    for (const PathVertex& v : level.vertices) {
+        for (int a = 0; a < v.arrival_count; ++a) {
+            extra += v.weight * eval_phase(*v.phase, v.wo, v.arrivals[a].wi) * v.arrivals[a].E;
         }
     }
-
-    [[nodiscard]] TraceContext trace() const { return {scene, lights, path}; }
-
-    [[nodiscard]] Spectrum alone(Rng& rng) const
-    {
-        Spectrum sum(0.0f);
-        for (const PathVertex& v : first) {
-            const ScatterEvent event{v.x, v.wo, cache_time, v.phase};
-            sum += v.weight * trace_after_event(trace(), event, rng).indirect;
-        }
-        return sum;
-    }
-
-    [[nodiscard]] Spectrum shared(const PathSharing& sharing, Rng& rng) const
-    {
-        std::vector<Spectrum> light(1, Spectrum(0.0f));
-        WalkCounts counts;
-        float cut = 0.0f;
-        const TraceContext aiming{scene, lights, path, nullptr, nullptr, &aims};
-        share_paths(aiming, extinction, sharing, first, rng, light, counts, cut);
-        return light[0];
-    }
-
-    /// One level of it, open to mistakes.
-    [[nodiscard]] Spectrum shared_with(Mistake mistake, Rng& rng) const
-    {
-        WalkCounts counts;
-        float cut = 0.0f;
-        const TraceContext context = trace();
-        const SharingContext sharing{context, extinction, 64, cache_time, counts, cut};
-        PathLevel level;
-        PathLevel next;
-        level.vertices = first;
-        send_paths(sharing, 1, mistake != Mistake::OneEventTooMany, level, next, rng);
-        Spectrum extra(0.0f);
-        for (const PathVertex& v : level.vertices) {
-            for (int a = 0; a < v.arrival_count; ++a) {
-                extra += v.weight * eval_phase(*v.phase, v.wo, v.arrivals[a].wi) * v.arrivals[a].E;
+    const size_t width = level.kernels.size() / std::max<size_t>(next.vertices.size(), 1);
+    for (size_t j = 0; j < next.vertices.size(); ++j) {
+        PathVertex& y = next.vertices[j];
+        follow_own_path(sharing, next.event(y, cache_time), 2, y, rng);
+        if (mistake == Mistake::NoCheck) y.log_excess = 0.0f;
+        const Vec3 x = first[static_cast<size_t>(y.from)].x;
+        for (size_t i = 0; i < first.size(); ++i) {
+            float& kernel = level.kernels[j * width + static_cast<size_t>(i)];
+            const float d = glm::length(y.x - first[static_cast<size_t>(level.order[i])].x);
+            const float own = glm::length(y.x - x);
+            if (mistake == Mistake::NoJacobian) kernel *= d * d / (own * own);
+            if (mistake == Mistake::OnlyWhatLanded) {
+                kernel *=
+                    static_cast<float>(first.size()) / static_cast<float>(next.vertices.size());
+            }
+            if (mistake == Mistake::StaleLight) {
+                kernel *=
+                    phase_pdf(*y.phase, glm::normalize(x - y.x), Vec3(0, 1, 0)) /
+                    phase_pdf(*y.phase,
+                              glm::normalize(first[static_cast<size_t>(level.order[i])].x - y.x),
+                              Vec3(0, 1, 0));
             }
         }
-        const size_t width = level.kernels.size() / std::max<size_t>(next.vertices.size(), 1);
-        for (size_t j = 0; j < next.vertices.size(); ++j) {
-            PathVertex& y = next.vertices[j];
-            follow_own_path(sharing, next.event(y, cache_time), 2, y, rng);
-            if (mistake == Mistake::NoCheck) y.log_excess = 0.0f;
-            const Vec3 x = first[static_cast<size_t>(y.from)].x;
-            for (size_t i = 0; i < first.size(); ++i) {
-                float& kernel = level.kernels[j * width + static_cast<size_t>(i)];
-                const float d = glm::length(y.x - first[static_cast<size_t>(level.order[i])].x);
-                const float own = glm::length(y.x - x);
-                if (mistake == Mistake::NoJacobian) kernel *= d * d / (own * own);
-                if (mistake == Mistake::OnlyWhatLanded) {
-                    kernel *=
-                        static_cast<float>(first.size()) / static_cast<float>(next.vertices.size());
-                }
-                if (mistake == Mistake::StaleLight) {
-                    kernel *=
-                        phase_pdf(*y.phase, glm::normalize(x - y.x), Vec3(0, 1, 0)) /
-                        phase_pdf(
-                            *y.phase,
-                            glm::normalize(first[static_cast<size_t>(level.order[i])].x - y.x),
-                            Vec3(0, 1, 0));
-                }
-            }
-        }
-        std::vector<Spectrum> light(1, Spectrum(0.0f));
-        gather_light(sharing, level, next, rng, light);
-        return light[0] + extra;
     }
-};
-
-Scene cloud(float density, float g)
-{
-    Scene scene = test::sun_and_sky(density).scene;
-    scene.media.volumes[0].phase = {g};
-    return scene;
-}
-
-template <class F>
-TestResult compare_with_alone(const Sharing& sharing, const test::Batches& batches, F&& shared)
-{
-    const MeanEstimate expected =
-        test::mean_of(batches, 1, [&](Rng& rng) { return sharing.alone(rng); });
-    const MeanEstimate found = test::mean_of(batches, 2, shared);
-    return welch_test(found, expected);
+    std::vector<Spectrum> light(1, Spectrum(0.0f));
+    gather_light(sharing, level, next, rng, light);
+    return light[0] + extra;
 }
 
 TEST(PathSharingStat, VerticesGetWhatTheirOwnPathsBring)
@@ -172,7 +104,7 @@ TEST(PathSharingStat, WrongWaysAreFoundOut)
     const test::Batches batches{32, 400};
     const auto judge = [&](Mistake mistake) {
         return compare_with_alone(sharing, batches,
-                                  [&](Rng& rng) { return sharing.shared_with(mistake, rng); })
+                                  [&](Rng& rng) { return shared_with(sharing, mistake, rng); })
             .p;
     };
     EXPECT_GT(judge(Mistake::None), alarm);

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "render/indirect_pass.h"
+#include "render/indirect_plan.h"
 #include "restir/room_scenes.h"
 #include "restir/runs.h"
 
