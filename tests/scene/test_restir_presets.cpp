@@ -129,7 +129,9 @@ TEST(RestirPresets, EstimatorTextsTellReuseAndWhyImagesAreBiased)
                                               preset + "\"\n" + more)
                                   .render);
     };
-    EXPECT_EQ(estimator_text({.estimator = EstimatorKind::Path}), "path, unbiased");
+    RenderDescription path;
+    path.estimator = EstimatorKind::Path;
+    EXPECT_EQ(estimator_text(path), "path, unbiased");
     EXPECT_EQ(estimator_text({}), "restir, reuse auto, unbiased");
     EXPECT_EQ(text_of("default"), "restir, reuse auto, unbiased");
     EXPECT_EQ(text_of("textbook"), "restir, reuse both, unbiased");
