@@ -15,11 +15,18 @@ class ProceduralDensity {
     [[nodiscard]] float at(Vec3i voxel) const;
 
   private:
+    struct Range {
+        float lo = 0.0f;
+        float hi = 0.0f;
+    };
+    static Range range_between(float lo, float hi, float offset, float scale);
+
     [[nodiscard]] float box(Vec3i voxel) const;
     [[nodiscard]] float sphere(Vec3 p) const;
     [[nodiscard]] float puff(Vec3 p) const;
     [[nodiscard]] float plume(Vec3 p) const;
-    [[nodiscard]] float turbulence(Vec3 p, float rise) const;
+    /// Octaves of noise; those that cannot bring the sum back into where it matters are left out.
+    [[nodiscard]] float turbulence(Vec3 p, float rise, Range matters) const;
 
     ProceduralParams params_;
     float phase_ = 0.0f;

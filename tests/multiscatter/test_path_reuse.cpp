@@ -287,6 +287,40 @@ TEST(PathReuse, TracesSuffixesAgainOnlyWhereSomethingHasChanged)
     }
 }
 
+/// Lamps that are an eighth as bright in the last frame as before. What paths found of their light
+/// is traced again (right), or kept and lags, which is how images of that rule are documented: it
+/// must show, but less than a history that is believed whole would have it.
+TEST(PathReuseStat, KeptSuffixesLagBehindLamps)
+{
+    PathEffort effort;
+    std::vector<Scene> frames = test::still_frames(effort.frames);
+    for (size_t i = 0; i + 1 < frames.size(); ++i) {
+        for (Light& light : frames[i].lights) std::get<SphereLight>(light).radiance *= 8.0f;
+    }
+    const test::FrameCaches caches = test::make_frame_caches(frames);
+    const TileStats reference = reference_of(frames.back(), 4, effort);
+    RenderDescription render = description_of(frames.back(), 4, EstimatorKind::Restir);
+    const auto bias = [&](IndirectSuffix suffix) {
+        TileStats added(test::tile_edge);
+        for (int run = 0; run < effort.runs; ++run) {
+            render.seed = 1 + static_cast<uint32_t>(run);
+            render.restir.indirect_suffix = suffix;
+            render.restir.indirect_reuse = IndirectReuse::Temporal;
+            const LayeredImage image = play(frames, caches, render);
+            render.restir.indirect_reuse = IndirectReuse::Spatial;
+            render.restir.spatial.neighbours = 0;  // walks alone
+            add_run(added, test::difference_of(image, play(frames, caches, render)));
+        }
+        return test::test_added(added, reference);
+    };
+    EXPECT_GT(bias(IndirectSuffix::Traced).p, test::alarm);
+    const test::AddedBias kept = bias(IndirectSuffix::BiasedValidated);
+    EXPECT_LT(kept.p, test::alarm);
+    EXPECT_GT(kept.whole_image.relative, 0.0);
+    EXPECT_LT(kept.whole_image.relative, 2.0);  // whole histories: 4.7
+    if (std::getenv("MOTE_REPORT")) std::printf("lags: %g\n", kept.whole_image.relative);
+}
+
 TEST(PathReuse, NeedsAShutterDuringWhichOnlyTheCameraMoves)
 {
     std::vector<Scene> frames = test::still_frames(1);
