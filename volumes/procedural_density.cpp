@@ -53,7 +53,6 @@ float smooth_step(float lo, float hi, float x)
 
 }  // namespace
 
-/// Where t matters to offset + scale * t if that is cut off below lo and above hi.
 ProceduralDensity::Range ProceduralDensity::range_between(float lo, float hi, float offset,
                                                           float scale)
 {

@@ -19,6 +19,7 @@ class ProceduralDensity {
         float lo = 0.0f;
         float hi = 0.0f;
     };
+    /// Where t matters to offset + scale * t if that is cut off below lo and above hi.
     static Range range_between(float lo, float hi, float offset, float scale);
 
     [[nodiscard]] float box(Vec3i voxel) const;

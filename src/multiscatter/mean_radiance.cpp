@@ -1,7 +1,6 @@
 #include "multiscatter/mean_radiance.h"
 
 #include <algorithm>
-#include <cstdlib>
 
 namespace mote {
 namespace {
@@ -38,7 +37,7 @@ std::vector<Spectrum> smooth(const SmokeLattice& lattice, const std::vector<Spec
 
 }  // namespace
 
-Spectrum MeanRadiance::at(Vec3 x) const
+std::optional<Spectrum> MeanRadiance::known_at(Vec3 x) const
 {
     const SmokeLattice::Corners corners = lattice.corners(x);
     Spectrum sum(0.0f);
@@ -48,16 +47,18 @@ Spectrum MeanRadiance::at(Vec3 x) const
         sum += corners.weight[n] * values[static_cast<size_t>(corners.slot[n])];
         weights += corners.weight[n];
     }
-    return weights > 0.0f ? sum / weights : Spectrum(0.0f);
+    if (!(weights > 0.0f)) return std::nullopt;
+    return sum / weights;
 }
 
-MeanRadiance mean_radiance(const RadianceCache& cache)
+MeanRadiance mean_radiance(RadianceCache cache)
 {
     MeanRadiance mean;
-    mean.lattice = cache.lattice;
+    mean.lattice = std::move(cache.lattice);
     mean.values.reserve(cache.incident.size());
     for (const RadianceCache::Node& node : cache.incident) {
-        mean.values.push_back(mean_of_order_0 * node[0]);
+        const Spectrum value = mean_of_order_0 * node[0];
+        mean.values.push_back(is_finite(value) ? value : Spectrum(0.0f));
     }
     for (int i = 0; i < smoothings; ++i) mean.values = smooth(mean.lattice, mean.values);
     return mean;
@@ -68,8 +69,9 @@ void blend_in(const MeanRadiance& before, int most_frames, MeanRadiance& now)
     const int frames = std::min(before.frames, most_frames);
     const float share = 1.0f / static_cast<float>(frames + 1);
     for (size_t slot = 1; slot < now.values.size(); ++slot) {
-        const Spectrum known = before.at(now.lattice.position(now.lattice.nodes[slot]));
-        now.values[slot] = known + share * (now.values[slot] - known);
+        const std::optional<Spectrum> known =
+            before.known_at(now.lattice.position(now.lattice.nodes[slot]));
+        if (known) now.values[slot] = *known + share * (now.values[slot] - *known);
     }
     now.frames = frames + 1;
 }

@@ -5,7 +5,8 @@
 namespace mote {
 
 /// Light that arrives at a vertex: the sum over a vertex's arrivals of phase(wo, wi) E is an
-/// unbiased estimate of what it scatters towards wo, whatever wo is.
+/// unbiased estimate of what it scatters towards wo, whatever wo is, less what is known of that
+/// (PathSharing::known): E may be below 0.
 struct IncidentSample {
     Vec3 wi{0.0f};     ///< [unit]
     Spectrum E{0.0f};  ///< radiance over the density of wi

@@ -17,7 +17,7 @@ namespace {
 constexpr size_t grain = 16;  ///< nodes per task
 
 /// What arrives at a node, by one direction in each of `count` strata of the sphere. `goes_on`: the
-/// mean weight with which their walks go on.
+/// mean weight with which their walks go on in media.
 RadianceCache::Node trace_node(const TraceContext& context, Vec3 x, int count, uint32_t slot,
                                uint32_t seed, float& goes_on)
 {
@@ -35,7 +35,9 @@ RadianceCache::Node trace_node(const TraceContext& context, Vec3 x, int count, u
         const TracedSegment segment = trace_segment(context, ray, false, rng);
         const std::optional<NextEvent> next = next_event(context.scene, ray.ray, segment);
         if (!next) continue;
-        goes_on += max_component(next->albedo) / static_cast<float>(count);
+        if (next->event.phase) {
+            goes_on += max_component(next->albedo) / static_cast<float>(count);
+        }
         float cut = 0.0f;
         const Spectrum light = next->albedo * light_of_event(context, next->event, 2, rng, cut) /
                                (sample_sphere_pdf() * static_cast<float>(count));

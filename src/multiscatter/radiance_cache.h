@@ -18,7 +18,7 @@ struct RadianceCache {
 
     SmokeLattice lattice;
     std::vector<Node> incident;  ///< per slot [W/(m^2 sr)]; slot 0 is black
-    float mean_events = 0.0f;    ///< estimate, of walks that start anywhere in the media
+    float mean_events = 0.0f;    ///< in media, of walks that start in them; an estimate
     double cpu_seconds = 0.0;
 };
 

@@ -137,8 +137,9 @@ class PathSender {
             found.surface = static_cast<int>(next_.surfaces.size());
             next_.surfaces.push_back(*segment.vertex);
         }
+        // First vertices' light of one event comes from elsewhere.
         if (is_first_) {
-            v.known += known / expected;  // light of one event comes from elsewhere
+            v.known += known / expected;
         } else {
             v.add({wi, (segment.light() + known - known_light(context_, v.x)) / pdf});
         }

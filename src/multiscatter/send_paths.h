@@ -17,6 +17,10 @@ namespace mote {
 /// space, if K is the true density of i's paths: the balance heuristic (Veach 1997) between all
 /// vertices of a group, "reconnection" in Lin et al. 2022. Transmittances in K are assumed ones.
 /// That leaves the factor (T_i / assumed_i) (assumed_k / T_k) to be made good; see gather_light.
+///
+/// Of S, what is known beforehand (C: isotropic, of a place alone) is not shared: of each vertex on
+/// the way S - C is, and C goes to the vertex before by its own path, where it has weight 1. A
+/// control variate: sum_y a_i(y) is 1 in the mean only, and S varies less than its mean.
 void send_paths(const SharingContext& context, int event_count, bool is_first, PathLevel& level,
                 PathLevel& next, Rng& rng);
 

@@ -29,7 +29,8 @@ struct PathSharing {
 /// Light scattered twice and more, at the scattering events on the rays of a tile's pixels. Each
 /// vertex sends one path on to a second one; vertices close together form groups, and all of a
 /// group take the light that any of their paths finds, in proportion to how likely they would have
-/// found it themselves. The same once more from the second vertices, and then the path tracer.
+/// found it themselves. The same once more from the second vertices (and the third, if levels is
+/// 3), and then the path tracer.
 /// Added to light[v.from], times v.weight; to `cut`, what the paths had left when max_bounces cut
 /// them (see PathResult), so weighted. Unbiased given the first vertices, whatever they are.
 ///
@@ -37,7 +38,8 @@ struct PathSharing {
 /// groups at once, with all samples instead of one; Deng et al. 2021 ("Path Graphs") gather alike,
 /// but iterate to a biased fixed point. Precondition: is_still_but_for_camera, as the events'
 /// rays may belong to different times. Cost: for each first vertex a path and about 5 ns for each
-/// of the group. Memory: about 1 KB per first vertex of tiles under way.
+/// of the group. Memory: about 1 KB per first vertex of tiles under way, twice that if groups are
+/// of 128.
 void share_paths(const TraceContext& context, const CoarseExtinction& extinction,
                  const PathSharing& sharing, std::vector<PathVertex> first, Rng& rng,
                  std::span<Spectrum> light, WalkCounts& counts, float& cut);

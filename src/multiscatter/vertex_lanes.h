@@ -95,7 +95,7 @@ struct LaneSums {
 };
 
 /// Adds to each vertex of the group kernel[i] times the light that vertex y, in a medium, scatters
-/// there. brought[i]: the largest channel of it.
+/// there. brought[i]: the magnitude of its largest channel.
 void scatter_to_group(const LaneGroup& group, const PathVertex& y, std::span<const float> kernel,
                       LaneSums& sums, std::span<float> brought);
 

@@ -39,7 +39,7 @@ struct PassInputs {
     AovSet aovs;
     const LightSampler& lights;            ///< for paths of many events; empty if there are none
     const ScatterNodes* nodes = nullptr;   ///< for previews; null: none
-    const PathSharing* sharing = nullptr;  ///< of paths of many events; null: see shares_paths()
+    const PathSharing* sharing = nullptr;  ///< of paths of many events; null: none are shared
     bool paths_bring_sky = false;          ///< see paths_bring_sky()
     bool surface_paths_bring_sky = false;
     Buffer2D<Spectrum>* path_light = nullptr;  ///< of reused paths, by pass; null: none are reused

@@ -73,7 +73,6 @@ float add_paths_from_media(const PassInputs& inputs, const TraceContext& context
                                     : trace_after_event(context, event, rng);
         sample.indirect += weight * albedo * path.indirect;
         if (inputs.paths_bring_sky) sample.direct += weight * albedo * path.direct;
-        sample.surface_indirect += weight * albedo * path.surface_indirect;
         cut += weight * max_component(albedo) * path.cut;
     }
     return cut;
@@ -92,7 +91,6 @@ float add_paths_from_surface(const PassInputs& inputs, const TraceContext& conte
     float cut = 0.0f;
     for (float u = rng.uniform() * step; u < 1.0f; u += step) {
         const PathResult path = trace_after_event(context, event, rng);
-        sample.indirect += weight * path.indirect;
         sample.surface_indirect += weight * path.surface_indirect;
         if (inputs.surface_paths_bring_sky) sample.surface_direct += weight * path.sky;
         cut += weight * path.cut;

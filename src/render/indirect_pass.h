@@ -7,13 +7,14 @@
 
 namespace mote {
 
-/// How many of `count` paths a ray is worth on which a share `lost` of the light collides: in
-/// proportion to it, but where smoke is thin more, as a few heavy paths would show as spots.
+/// How many of `count` paths a ray is worth on which a share `lost` of the light collides in media,
+/// or reaches the surface behind: in proportion to it, but of small shares more, as a few heavy
+/// paths would show as spots.
 [[nodiscard]] float paths_worth(float lost, int count);
 
 /// Light scattered twice and more along a pixel's ray, by the path tracer from exact first events
-/// on: stratified free flights, each worth the share of light that collides; where a surface ends
-/// the ray, that is all. What media scatter first comes from nodes in previews, from
+/// on: stratified free flights that share what collides in media, and paths from the surface that
+/// ends the ray for what reaches it. What media scatter first comes from nodes in previews, from
 /// `path_light` where paths are reused, from residual walks where there is a cache of radiance;
 /// where they are shared, first events go to `first` under `owner`, for light_shared_paths. Does
 /// nothing if light scatters only once. `surface`: that ends the ray; may be null.

@@ -10,6 +10,7 @@
 namespace mote {
 namespace {
 
+constexpr int coverage_tile = 16;  ///< [px] a side
 /// One in so many of a frame's paths goes into what is known before.
 constexpr int share_for_residuals = 10;
 constexpr int share_for_mean = 50;
@@ -29,11 +30,36 @@ bool finds_sky_by_paths(const Scene& scene, const RenderDescription& render)
            render.path.light_strategy == LightStrategy::Auto;
 }
 
+/// Whether the mean radiance in the media is worth knowing where paths are shared: not around small
+/// lamps, where no coarse guess is close, nor where walks are cut short.
+bool knows_mean_radiance(const Scene& scene, const RenderDescription& render)
+{
+    return render.path.max_bounces >= enough_bounces && media_in_view(scene) &&
+           !has_small_lamps(scene);
+}
+
+/// Share of the picture's tiles that may see media.
+double share_in_view(const Scene& scene)
+{
+    int64_t tiles = 0;
+    int64_t seen = 0;
+    for (int y = 0; y < scene.camera.height; y += coverage_tile) {
+        for (int x = 0; x < scene.camera.width; x += coverage_tile) {
+            const Tile tile{x, y, std::min(x + coverage_tile, scene.camera.width),
+                            std::min(y + coverage_tile, scene.camera.height)};
+            ++tiles;
+            if (media_in_view(scene, tile)) ++seen;
+        }
+    }
+    return static_cast<double>(seen) / static_cast<double>(std::max<int64_t>(tiles, 1));
+}
+
 RadianceCache trace_radiance(const IndirectInputs& inputs, const CachedGuesses& guesses, int share)
 {
     const RenderDescription& render = inputs.render;
-    const int64_t paths =
-        int64_t{render.width} * render.height * render.samples * render.restir.indirect_paths;
+    const auto most = static_cast<double>(int64_t{render.width} * render.height * render.samples *
+                                          render.restir.indirect_paths);
+    const auto paths = static_cast<int64_t>(share_in_view(inputs.scene) * most);
     return make_radiance_cache(
         {inputs.scene, inputs.lights, render.path, &guesses.shadows, guesses.guide(), &inputs.aims},
         share_of_paths(paths, share, render.seed));
@@ -55,12 +81,6 @@ bool corrects_cache(const Scene& scene, const RenderDescription& render)
 {
     return render.restir.indirect == IndirectLight::Cached && render.path.max_bounces > 1 &&
            media_in_view(scene);
-}
-
-bool knows_mean_radiance(const Scene& scene, const RenderDescription& render)
-{
-    return render.path.max_bounces >= enough_bounces && media_in_view(scene) &&
-           !has_small_lamps(scene);
 }
 
 bool paths_bring_sky(const Scene& scene, const RenderDescription& render)
@@ -97,10 +117,10 @@ IndirectGuesses guess_indirect(const IndirectInputs& inputs)
     if (!shares_paths(scene, render) || !inputs.caches.extinction) return out;
     out.sharing.emplace();
     if (!knows_mean_radiance(scene, render)) return out;
-    const RadianceCache cache = trace_radiance(inputs, guesses, share_for_mean);
+    RadianceCache cache = trace_radiance(inputs, guesses, share_for_mean);
     out.cpu_seconds = cache.cpu_seconds;
     out.sharing = sharing_for(scene.media, cache.mean_events);
-    out.known = mean_radiance(cache);
+    out.known = mean_radiance(std::move(cache));
     const int frames = inputs.is_same ? frames_at_rest : frames_in_motion;
     if (inputs.before) blend_in(*inputs.before, frames - 1, *out.known);
     return out;

@@ -14,10 +14,6 @@ namespace mote {
 /// Whether a frame's pixels share paths of many events; its light caches then need mean extinction.
 [[nodiscard]] bool shares_paths(const Scene& scene, const RenderDescription& render);
 
-/// Whether the mean radiance in the media is worth knowing where paths are shared: not around small
-/// lamps, where no coarse guess is close, nor where walks are cut short.
-[[nodiscard]] bool knows_mean_radiance(const Scene& scene, const RenderDescription& render);
-
 /// Whether a constant environment is the only light of the scene, and paths go on until they find
 /// it. Then what a path brings hardly depends on when it does, and parts of its light vary far more
 /// than their sum: light scattered once is best left to the same paths. (Measured: puff_sky, 480 x
@@ -36,7 +32,8 @@ struct IndirectGuesses {
     std::optional<ScatterNodes> nodes;      ///< of previews
     std::optional<RadianceCache> radiance;  ///< for residual walks
     std::optional<PathSharing> sharing;     ///< of paths; `known` is the caller's to set
-    std::optional<MeanRadiance> known;
+    std::optional<MeanRadiance> known;      ///< where paths are shared, but not around small lamps
+                                            ///< nor where walks are cut short
     double cpu_seconds = 0.0;
 };
 
@@ -48,12 +45,13 @@ struct IndirectInputs {
     const LightCaches& caches;
     const AimedLights& aims;
     bool reuses_paths = false;
-    const MeanRadiance* before = nullptr;  ///< of the frames before; null: none
+    const MeanRadiance* before = nullptr;  ///< of the frames before, if this one reuses them
     bool is_same = false;                  ///< but for the camera nothing has changed since
 };
 
-/// Cost: previews' nodes, a tenth of the frame's paths for residual walks, a fiftieth of them for
-/// the mean radiance where paths are shared.
+/// Cost: previews' nodes; a tenth of the frame's paths for residual walks, a fiftieth of them for
+/// the mean radiance, in both cases of as many as there would be if all tiles that see media were
+/// full of them.
 [[nodiscard]] IndirectGuesses guess_indirect(const IndirectInputs& inputs);
 
 }  // namespace mote

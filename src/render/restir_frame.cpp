@@ -54,7 +54,9 @@ size_t history_bytes(const FrameHistory::Impl& history)
     const FinishedPass& pass = history.before;
     return pass.domains.memory_bytes() + history.paths.memory_bytes() +
            (pass.reservoirs.size() + pass.surface_reservoirs.size()) * sizeof(Reservoir) +
-           pass.surfaces.size() * sizeof(SurfaceDomain) + history.pixels.size() * sizeof(PixelFilm);
+           pass.surfaces.size() * sizeof(SurfaceDomain) +
+           history.pixels.size() * sizeof(PixelFilm) +
+           (history.known ? history.known->memory_bytes() : 0);
 }
 
 /// The scene for as long as the frame takes; with reuse its samples must outlive the frame.
@@ -87,9 +89,12 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
     const ReusePlan plan = plan_reuse(domain, render, change);
     const AimedLights aims = find_aimed_lights(scene);
     const bool is_same = change && !(change->media || change->lights || change->surfaces);
+    // Under auto, frames that reuse nothing else are the same whatever was rendered before.
+    const bool uses_known = history.known && (render.restir.reuse != ReuseMode::Auto ||
+                                              plan.accumulates || plan.reuses_samples());
     IndirectGuesses guesses =
         guess_indirect({scene, render, lights, *history.caches, aims, plan.paths,
-                        history.known ? &*history.known : nullptr, is_same});
+                        uses_known ? &*history.known : nullptr, is_same});
     if (guesses.known) guesses.sharing->known = &*guesses.known;
     stats.cache_cpu_seconds += guesses.cpu_seconds;
     Buffer2D<Spectrum> path_light;

@@ -80,13 +80,13 @@ void describe(FieldVisitor& v, RestirParams& restir)
          .doc =
              "Light scattered twice and more in media: by paths of each pixel's own, or by paths "
              "from which pixels of a tile share all that is behind the first event; auto: "
-             "shared, unless more than the camera moves while the shutter is open. A fiftieth of "
-             "the paths (and the frames before, where `reuse` keeps any) tell the mean radiance "
-             "beforehand, which takes noise from those that are shared. cached, for study: walks "
-             "that correct a coarse cache of radiance, made anew each frame for a tenth of the "
-             "paths; unbiased whatever it says. Measured against the path tracer per CPU time: "
-             "0.76 (plume of g 0.3) and 1.0 times (1000 lamps) as good, where shared is 2.2 and "
-             "4.8"},
+             "shared, unless more than the camera moves while the shutter is open. With 8 bounces "
+             "and more, and no small lamps, a fiftieth of the paths (and the frames before, where "
+             "`reuse` takes from them) tell the mean radiance beforehand, which takes noise from "
+             "those that are shared. cached, for study: walks that correct a coarse cache of "
+             "radiance, made anew each frame for a tenth of the paths; unbiased whatever it says. "
+             "Measured against the path tracer per CPU time: 0.76 (plume of g 0.3) and 1.0 times "
+             "(1000 lamps) as good, where shared is 2.2 and 4.8"},
         restir.indirect, indirect_names);
     visit_choice(
         v,

@@ -1,6 +1,8 @@
 // What is known of the light of many events, and what shared paths make of it: right in the mean
 // whatever it is, less noisy where it is close.
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "multiscatter/gather_light.h"
@@ -62,44 +64,50 @@ enum class Mistake {
     None,
     NotGivenBack,  ///< what is known is taken from shared paths alone
     NotTakenOff,   ///< or given to the vertices alone
+    NotInBetween,  ///< or only at the ends of levels
 };
 
-/// One level of sharing, open to mistakes.
+/// Two levels of sharing, open to mistakes.
 Spectrum shared_with(const Sharing& setting, const MeanRadiance& known, Mistake mistake, Rng& rng)
 {
     WalkCounts counts;
     float cut = 0.0f;
     const TraceContext context = setting.trace();
     SharingContext sharing{context, setting.extinction, 64, cache_time, counts, cut, 0.0f, &known};
-    PathLevel level;
-    PathLevel next;
-    level.vertices = setting.first;
-    send_paths(sharing, 1, true, level, next, rng);
-    if (mistake == Mistake::NotTakenOff) sharing.known = nullptr;
-    for (PathVertex& y : next.vertices) {
-        follow_own_path(sharing, next.event(y, cache_time), 2, y, rng);
+    PathLevel levels[3];
+    levels[0].vertices = setting.first;
+    send_paths(sharing, 1, true, levels[0], levels[1], rng);
+    if (mistake == Mistake::NotInBetween) sharing.known = nullptr;
+    send_paths(sharing, 2, false, levels[1], levels[2], rng);
+    sharing.known = mistake == Mistake::NotTakenOff ? nullptr : &known;
+    for (PathVertex& y : levels[2].vertices) {
+        if (y.surface < 0) follow_own_path(sharing, levels[2].event(y, cache_time), 3, y, rng);
     }
     if (mistake == Mistake::NotGivenBack) {
-        for (PathVertex& v : level.vertices) v.known = Spectrum(0.0f);
+        for (PathVertex& v : levels[0].vertices) v.known = Spectrum(0.0f);
     }
     std::vector<Spectrum> light(1, Spectrum(0.0f));
-    gather_light(sharing, level, next, rng, light);
+    gather_light(sharing, levels[1], levels[2], rng, {});
+    gather_light(sharing, levels[0], levels[1], rng, light);
     return light[0];
 }
 
 TEST(MeanRadianceStat, WhatIsKnownCountsOnce)
 {
-    const Sharing sharing(test::cloud(8.0f, 0.6f), 4, 0.5f);
-    const MeanRadiance known = guess(sharing.scene.media, Spectrum(1.0f));
-    const auto judge = [&](Mistake mistake) {
-        return test::compare_with_alone(
-                   sharing, {32, 60},
-                   [&](Rng& rng) { return shared_with(sharing, known, mistake, rng); })
-            .p;
-    };
-    EXPECT_GT(judge(Mistake::None), alarm);
-    EXPECT_LT(judge(Mistake::NotGivenBack), alarm);
-    EXPECT_LT(judge(Mistake::NotTakenOff), alarm);
+    for (const bool has_surfaces : {false, true}) {
+        const Sharing sharing(has_surfaces ? test::room() : test::cloud(8.0f, 0.6f), 5, 0.5f);
+        const MeanRadiance known = guess(sharing.scene.media, Spectrum(1.0f));
+        const auto judge = [&](Mistake mistake) {
+            return test::compare_with_alone(
+                       sharing, {32, 60},
+                       [&](Rng& rng) { return shared_with(sharing, known, mistake, rng); })
+                .p;
+        };
+        EXPECT_GT(judge(Mistake::None), alarm) << has_surfaces;
+        EXPECT_LT(judge(Mistake::NotGivenBack), alarm) << has_surfaces;
+        EXPECT_LT(judge(Mistake::NotTakenOff), alarm) << has_surfaces;
+        EXPECT_LT(judge(Mistake::NotInBetween), alarm) << has_surfaces;
+    }
 }
 
 /// Deep in white smoke under an even sky all paths find the same light, and only how many of them a
@@ -182,17 +190,27 @@ TEST(MeanRadiance, IsAMeanOverFrames)
     EXPECT_NEAR(next.values[1].x, 4.0f, 1e-5f);
 }
 
-/// Smoke that has gone elsewhere finds nothing known there: black, not garbage.
+/// Where smoke has only just arrived nothing is known: that is not the same as black.
 TEST(MeanRadiance, LatticesMayDiffer)
 {
     Media media = test::sun_and_sky().scene.media;
-    const MeanRadiance before = mean_radiance(even_cache(media, Spectrum(1.0f)));
+    const MeanRadiance before = mean_radiance(even_cache(media, Spectrum(5.0f)));
     media.volumes[0].world_from_object.keys[0].translate += Vec3d(50.0, 0.0, 0.0);
     MeanRadiance now = mean_radiance(even_cache(media, Spectrum(1.0f)));
     blend_in(before, 31, now);
     for (size_t slot = 1; slot < now.values.size(); ++slot) {
-        EXPECT_NEAR(now.values[slot].x, 0.5f, 1e-5f);
+        EXPECT_NEAR(now.values[slot].x, 1.0f, 1e-5f);
     }
+}
+
+/// A path too bright for floats would else spread to all nodes around, and last.
+TEST(MeanRadiance, NodesThatAreNotFiniteAreBlack)
+{
+    const Media media = test::sun_and_sky().scene.media;
+    RadianceCache cache = even_cache(media, Spectrum(1.0f));
+    cache.incident[cache.incident.size() / 2][0].x = infinity;
+    cache.incident[cache.incident.size() / 3][0].y = std::nanf("");
+    for (const Spectrum& value : mean_radiance(cache).values) EXPECT_TRUE(is_finite(value));
 }
 
 TEST(RadianceCache, CountsEventsFromWhereMediaCollide)
@@ -208,6 +226,12 @@ TEST(RadianceCache, CountsEventsFromWhereMediaCollide)
     EXPECT_LT(events(1e-3f, 1.0f), 1.1f);
     EXPECT_GT(events(1e4f, 1.0f), 100.0f);
     EXPECT_EQ(events(0.0f, 1.0f), 1.0f);
+    // Walls keep walks in, but what they do there is not shared.
+    Scene room = test::room();
+    room.media.volumes[0].density_scale *= 1e-3f;
+    const PathTracerParams path{.max_bounces = 8};
+    const LightSampler lights(room, path);
+    EXPECT_LT(make_radiance_cache({room, lights, path}, {16, 1000, 1}).mean_events, 1.1f);
 }
 
 TEST(PathSharing, IsWiderWhereWalksAreLongAndLobesNarrow)
@@ -215,6 +239,10 @@ TEST(PathSharing, IsWiderWhereWalksAreLongAndLobesNarrow)
     Media media = test::cloud(8.0f, 0.85f).media;
     EXPECT_GT(sharing_for(media, 100.0f).levels, PathSharing().levels);
     EXPECT_EQ(sharing_for(media, 10.0f).levels, PathSharing().levels);
+    media.volumes[0].phase = {-0.85f};
+    EXPECT_GT(sharing_for(media, 100.0f).group_size, PathSharing().group_size);
+    media.volumes[0].phase = {0.95f, -0.5f, 0.5f};
+    EXPECT_EQ(sharing_for(media, 100.0f).group_size, PathSharing().group_size);
     media.volumes[0].phase = {-0.3f};
     EXPECT_EQ(sharing_for(media, 100.0f).group_size, PathSharing().group_size);
 }

@@ -82,6 +82,7 @@ std::vector<TestScene> scenes()
                                 with_bounces(test::overlapping(), 4, "overlapping volumes"),
                                 with_bounces(test::camera_inside(), 4, "camera inside"),
                                 {"courtyard", test::courtyard(true), 4},
+                                {"courtyard of many events", test::courtyard(true), 8},
                                 closed_room()};
     for (TestScene& scene : list) use_large_camera(scene.scene);
     return list;

@@ -27,9 +27,11 @@ struct Options {
     OutputDescription output;
 };
 
+/// By the path tracer.
 inline Options options(int samples, int bounces, std::vector<std::string> aovs)
 {
     Options o;
+    o.render.estimator = EstimatorKind::Path;
     o.render.samples = samples;
     o.render.path.max_bounces = bounces;
     o.render.seed = 5;

@@ -134,6 +134,7 @@ struct ReuseRuns {
     render.width = scene.camera.width;
     render.height = scene.camera.height;
     render.samples = samples;
+    render.estimator = EstimatorKind::Path;
     render.path.transmittance = TransmittanceKind::Exact;
     render.path.equiangular = true;  // lamps stand in smoke
     const OutputDescription output = direct_light_output();

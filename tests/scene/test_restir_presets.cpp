@@ -22,6 +22,7 @@ void expect_same(const RestirParams& a, const RestirParams& b)
     EXPECT_EQ(a.control_variate, b.control_variate);
     EXPECT_EQ(a.distant_rays, b.distant_rays);
     EXPECT_EQ(a.environment_rays, b.environment_rays);
+    EXPECT_EQ(a.surface.indirect_paths, b.surface.indirect_paths);
     EXPECT_EQ(a.indirect_paths, b.indirect_paths);
     EXPECT_EQ(a.corrections, b.corrections);
     EXPECT_EQ(a.shift, b.shift);

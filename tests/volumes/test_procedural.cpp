@@ -1,6 +1,7 @@
 // Procedural densities against the same formulas written out, without what is left out or shared
 // to save time: bit for bit.
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
