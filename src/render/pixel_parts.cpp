@@ -1,5 +1,7 @@
 #include "render/pixel_parts.h"
 
+#include <algorithm>
+
 #include "render/seen_look.h"
 
 namespace mote {
@@ -45,7 +47,12 @@ void split_pixel(const PassInputs& inputs, const PassKey& key, const Ray& main,
             int g = 0;
             while (g < count && !looks_alike(groups[g].look, look)) ++g;
             if (g == count && count < most_parts) groups[count++].look = look;
-            Group& group = groups[std::min(g, most_parts - 1)];  // the rest are one
+            // The rest join those with least: one ray for most of the pixel would be noisy.
+            Group& group = g < count ? groups[g]
+                                     : *std::min_element(groups, groups + count,
+                                                         [](const Group& a, const Group& b) {
+                                                             return a.count < b.count;
+                                                         });
             group.has_main |= is_main;
             if (rng.uniform() * static_cast<float>(++group.count) < 1.0f) group.chosen = ray;
         }

@@ -13,8 +13,9 @@ struct SeenLook {
     int triangle = -1;   ///< of the object's mesh
     float t = infinity;  ///< distance of the surface [m]
     Vec3 p{0.0f};        ///< point on it [m]
-    Vec3 n{0.0f};        ///< its geometric normal [unit, either side]
-    Spectrum Le{0.0f};   ///< emitted towards the camera by the surface
+    Vec3 n{0.0f};        ///< its normal [unit, either side]: of glossy surfaces the shading normal
+    float like_normals = 0.9f;  ///< cosine between normals above which its reflections are alike
+    Spectrum Le{0.0f};          ///< emitted towards the camera by the surface
 };
 
 /// `near`: what a ray beside it sees, which may spare some work; null: unknown. Cost: a ray, and a

@@ -112,7 +112,7 @@ struct SpatialParams {
 struct SurfaceRestirParams {
     int light_candidates = 8;  ///< lamps tried per pixel and pass, [1, 256]
     int bsdf_candidates = 1;   ///< directions tried besides, [1, 64]
-    int indirect_paths = 6;    ///< paths of two and more events per pass, [1, 256]
+    int indirect_paths = 8;    ///< paths of two and more events per pass, [1, 256]
     float cap = 20.0f;         ///< most confidence a history may have [passes]
     int neighbours = 5;        ///< [0, 32]; two shadow rays each
     float radius_px = 10.0f;   ///< of the disk they are taken from [px]

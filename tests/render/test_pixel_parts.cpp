@@ -8,6 +8,7 @@
 #include "render/one_pass.h"
 #include "render/pixel_parts.h"
 #include "support/surface_scene.h"
+#include "surfaces/meshes.h"
 
 namespace mote {
 namespace {
@@ -251,6 +252,37 @@ TEST(PixelPartsStat, EdgesAreLessNoisyByFar)
 }
 
 /// Images do not depend on the number of threads, whether samples are reused or not.
+/// Parts of the pixel that sees the middle of a metal ball two metres across, five away.
+std::vector<PixelPart> parts_of_ball(float roughness)
+{
+    Scene scene;
+    scene.camera.width = size;
+    scene.camera.height = size;
+    scene.camera.tan_half_fov_y = 0.25f;
+    Material metal;
+    metal.kind = MaterialKind::MetallicRoughness;
+    metal.metallic = 1.0f;
+    metal.roughness = roughness;
+    Trs place;
+    place.translate = {0.0, 0.0, -5.0};
+    test::add_surfaces(scene, {{test::sphere_mesh(1.0f, 24), metal, place}});
+    const Pass pass(std::move(scene), 4, 1);
+    const PassKey key{size / 2, size / 2, 0};
+    std::vector<PixelPart> parts;
+    split_pixel(pass.inputs, key, camera_ray(pass.inputs, key), parts);
+    return parts;
+}
+
+/// A mirror that is bent shows something else in every corner of a pixel; none of the few rays that
+/// are followed stands for most of it.
+TEST(PixelParts, BentMirrorsAreDividedEvenly)
+{
+    const std::vector<PixelPart> mirror = parts_of_ball(0.1f);
+    ASSERT_EQ(mirror.size(), size_t{most_parts});
+    for (const PixelPart& part : mirror) EXPECT_EQ(part.weight, 0.25f);
+    EXPECT_EQ(parts_of_ball(0.9f).size(), 1u);
+}
+
 TEST(PixelParts, ThreadsDoNotMatter)
 {
     Scene scene = make_scene();
