@@ -98,6 +98,7 @@ void step_lanes(const BrickTable& table, RayBlock& rays, size_t i, int steps, Pi
         packing.store(pieces.p[0] + count, px);
         packing.store(pieces.p[1] + count, py);
         packing.store(pieces.p[2] + count, pz);
+        packing.store(pieces.s + count, s);
         packing.store(pieces.length + count, length);
         packing.store(pieces.brick + count, entry);
         packing.store(pieces.ray + count, Lanes::count_from(static_cast<int32_t>(i)));

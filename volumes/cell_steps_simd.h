@@ -72,11 +72,12 @@ typename Lanes::Real interpolate(const typename Lanes::Real* v, const typename L
     return Lanes::fma(x, Lanes::sub(v1, v0), v0);
 }
 
-/// One group of pieces side by side. Inside a cell the density is a cubic in s, so two Gauss points
-/// integrate it exactly; unlike Simpson's rule they need nothing from the cell before.
-template <class Lanes>
-void integrate_lanes(const float* values, const BrickPiece* pieces, const uint16_t* order,
-                     float* integral)
+/// One group of pieces side by side; on_cell(s, integral) at the end of every cell. Inside a cell
+/// the density is a cubic in s, so two Gauss points integrate it exactly; unlike Simpson's rule
+/// they need nothing from the cell before.
+template <class Lanes, class OnCell>
+typename Lanes::Real integrate_lanes(const float* values, const BrickPiece* pieces,
+                                     const uint16_t* order, OnCell&& on_cell)
 {
     using Real = typename Lanes::Real;
     Real field[8];
@@ -117,8 +118,9 @@ void integrate_lanes(const float* values, const BrickPiece* pieces, const uint16
         const Real at_a = interpolate<Lanes>(v, dz, xa, ya, za);
         const Real at_b = interpolate<Lanes>(v, dz, xb, yb, zb);
         sum = Lanes::fma(span, Lanes::add(at_a, at_b), sum);
+        on_cell(s, sum);
     }
-    Lanes::scatter(Lanes::mul(sum, Lanes::all(0.5f)), order, integral);
+    return Lanes::mul(sum, Lanes::all(0.5f));
 }
 
 /// Asks for the first cells of a group that is next. Measured: 6 % of the whole walk.
@@ -143,7 +145,26 @@ void integrate_all(const float* values, const BrickPiece* pieces, const uint16_t
     for (size_t i = 0; i < count; i += Lanes::width) {
         const size_t next = i + Lanes::width;
         if (next < count) prefetch_lanes<Lanes>(values, pieces, order + next);
-        integrate_lanes<Lanes>(values, pieces, order + i, integral);
+        const auto sum = integrate_lanes<Lanes>(values, pieces, order + i,
+                                                [](typename Lanes::Real, typename Lanes::Real) {});
+        Lanes::scatter(sum, order + i, integral);
+    }
+}
+
+template <class Lanes>
+void tabulate_all(const float* values, const BrickPiece* pieces, const uint16_t* order,
+                  size_t count, CellTable& table)
+{
+    using Real = typename Lanes::Real;
+    for (size_t i = 0; i < count; i += Lanes::width) {
+        const size_t next = i + Lanes::width;
+        if (next < count) prefetch_lanes<Lanes>(values, pieces, order + next);
+        size_t row = 0;
+        integrate_lanes<Lanes>(values, pieces, order + i, [&](Real s, Real sum) {
+            Lanes::store(table.end[row] + i, s);
+            Lanes::store(table.integral[row] + i, Lanes::mul(sum, Lanes::all(0.5f)));
+            row = row + 1 < CellTable::most_cells ? row + 1 : row;
+        });
     }
 }
 

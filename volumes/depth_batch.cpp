@@ -1,18 +1,13 @@
 #include "volumes/depth_batch.h"
 
 #include "core/error.h"
-#include "volumes/local_ray.h"
+#include "volumes/ray_block.h"
 #include "volumes/ray_order.h"
-#include "volumes/walk_kernels.h"
 
 namespace mote {
 namespace {
 
-static_assert(BrickGrid::brick_values == 736 && BrickGrid::brick_stride == 9,
-              "cell_steps_simd.h knows the layout by heart");
-
 constexpr int round_steps = 4;  ///< of each ray in one round: early stops waste no more
-constexpr int most_cells = 22;  ///< of one piece: three axes of seven borders, and the start
 static_assert(RayBlock::capacity * round_steps <= PieceList::capacity);
 
 /// Working space of a batch, 90 kB on the stack: allocating it would cost small batches more.
@@ -31,20 +26,6 @@ struct Workspace {
     float piece_integral[PieceList::capacity + 1];
     size_t piece_count;
 };
-
-void set_ray(RayBlock& rays, size_t i, const BrickGrid& grid, const LocalRay& ray)
-{
-    for (int axis = 0; axis < 3; ++axis) {
-        const bool moves = std::abs(ray.d[axis]) > 1e-30f;
-        const int cell = static_cast<int>(ray.o[axis] / BrickGrid::brick_size);
-        rays.o[axis][i] = ray.o[axis];
-        rays.d[axis][i] = ray.d[axis];
-        rays.inv[axis][i] = moves ? 1.0f / ray.d[axis] : 0.0f;
-        rays.cell[axis][i] = static_cast<float>(std::clamp(cell, 0, grid.brick_count[axis] - 1));
-    }
-    rays.s[i] = 0.0f;
-    rays.s1[i] = ray.s1;
-}
 
 /// The rays that meet the volume and have something left to lose, padded to whole groups.
 void start_rays(const Volume& volume, std::span<const DepthQuery> queries,
@@ -98,7 +79,7 @@ void take_pieces(const BrickGrid& grid, Workspace& work, WalkCounts& counts)
 size_t sort_pieces(Workspace& work)
 {
     size_t count = work.piece_count;
-    sort_by_key<most_cells + 1>(std::span(work.cells, count), work.order);
+    sort_by_key<CellTable::most_cells + 1>(std::span(work.cells, count), work.order);
     work.pieces[count] = {};
     const auto empty = static_cast<uint16_t>(count);
     while (count % lane_group != 0) work.order[count++] = empty;
@@ -120,8 +101,7 @@ void add_volume(const Volume& volume, std::span<const DepthQuery> queries, std::
                 std::span<const uint32_t> chosen, Workspace& work, WalkCounts& counts)
 {
     const BrickGrid& grid = *volume.density;
-    const Vec3i bricks = grid.brick_count;
-    const BrickTable table{grid.table.data(), {bricks.x, bricks.y, bricks.z}};
+    const BrickTable table = table_of(grid);
     const WalkKernels& walk = walk_kernels();
     start_rays(volume, queries, tau, chosen, work);
     counts.rays += work.ray_count;

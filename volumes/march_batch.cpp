@@ -3,9 +3,8 @@
 
 #include "core/error.h"
 #include "volumes/depth_batch.h"
-#include "volumes/local_ray.h"
+#include "volumes/ray_block.h"
 #include "volumes/ray_order.h"
-#include "volumes/walk_kernels.h"
 
 namespace mote {
 namespace {
@@ -76,9 +75,8 @@ void add_volume(const Volume& volume, std::span<const DepthQuery> queries, std::
     size_t padded = count;
     while (padded % lane_group != 0) set_ended(work.rays, padded++);
     const BrickGrid& grid = *volume.density;
-    const Vec3i bricks = grid.brick_count;
-    walk_kernels().march({grid.table.data(), {bricks.x, bricks.y, bricks.z}}, grid.values.data(),
-                         work.rays, padded, work.integral, work.lookups);
+    walk_kernels().march(table_of(grid), grid.values.data(), work.rays, padded, work.integral,
+                         work.lookups);
     for (size_t n = 0; n < count; ++n) {
         tau[work.query[work.order[n]]] += volume.density_scale * work.integral[n];
         counts.cells += static_cast<uint64_t>(work.lookups[n]);

@@ -4,17 +4,12 @@
 #include <cmath>
 #include <vector>
 
+#include "volumes/bin_batch.h"
+#include "volumes/bin_filler.h"
 #include "volumes/collisions.h"
 
 namespace mote {
 namespace {
-
-/// A bin is closed when transmittance has dropped by this much since its near edge.
-constexpr float transmittance_step = 0.04f;
-/// Cells per bin, unless the ray is so long that the bins would run out.
-constexpr int cells_per_bin = 4;
-/// Edges closer than this share of a cell's size are one edge: rounding, not gaps.
-constexpr float gap = 1e-4f;
 
 /// The part of a local ray between two distances, re-based to the first.
 LocalRay part_of(const LocalRay& ray, float s0, float s1)
@@ -26,98 +21,22 @@ LocalRay part_of(const LocalRay& ray, float s0, float s1)
     return part;
 }
 
-/// Appends edges to a table; the last slot stays free for the far end.
-struct BinWriter {
-    RayBins& bins;
-    int cells_in_bin = 0;
-    float limit = transmittance_step;  ///< depth at which the open bin is closed
-
-    [[nodiscard]] bool is_full() const { return bins.count >= RayBins::capacity - 1; }
-
-    /// Closes the open bin at distance s.
-    void close(float s, float tau)
-    {
-        ++bins.count;
-        bins.s[bins.count] = s;
-        bins.tau[bins.count] = tau;
-        cells_in_bin = 0;
-        // Nothing is gained from thin bins where hardly any light gets to.
-        limit = tau < 7.0f ? tau + transmittance_step * std::exp(tau) : infinity;
-    }
-};
-
-/// Bins of one medium. Returns the ray in its grid, for later lookups.
+/// Bins of one medium.
 void bin_one(const Volume& volume, const Ray& ray, float t_end, float cut, RayBins& bins,
              BinCounts& counts)
 {
-    bins.count = 0;
     const BrickGrid& grid = *volume.density;
     const LocalRay local = density_ray(volume, ray, {0.0f, t_end});
     if (local.misses()) return;
-    bins.t0 = local.t0;
-    const float scale = volume.density_scale;
-    const float depth_cut = cut > 0.0f ? -std::log(cut) : infinity;
-    const Vec3 speed = glm::abs(local.d);
-    const float crossings = local.s1 * (speed.x + speed.y + speed.z);
-    const float tolerance = gap / std::max({speed.x, speed.y, speed.z});
-    const int cells_max =
-        std::max(cells_per_bin, static_cast<int>(crossings / (RayBins::capacity - 16)) + 1);
-    BinWriter out{bins};
-    float tau = 0.0f;
-    float end = 0.0f;  // of the last stretch that was added
-    bool started = false;
-    int64_t cells = 0;
-    int64_t uniform_bricks = 0;
-    // A stretch that holds something; what lies before it is a gap if it does not join on.
-    const auto open_at = [&](float s) {
-        if (!started) {
-            started = true;
-            bins.s[0] = s;
-            bins.tau[0] = 0.0f;
-        } else if (s > end + tolerance && !out.is_full()) {
-            if (out.cells_in_bin > 0) out.close(end, tau);
-            if (!out.is_full()) out.close(s, tau);
-        }
-    };
+    BinFiller filler(volume, local, cut, bins);
     for_each_brick(grid, local, [&](const BrickSpan& span) {
         const BrickRange& range = grid.ranges[static_cast<size_t>(span.brick)];
-        if (range.min == range.max) {
-            ++uniform_bricks;
-            if (!(range.max > 0.0f)) return true;
-            open_at(span.s0);
-            const float sigma_t = scale * range.max;
-            const float whole = (span.s1 - span.s0) * sigma_t;
-            // Equal steps in transmittance, as far as the light gets.
-            const float start = tau;
-            while (!out.is_full() && out.limit < start + whole) {
-                tau = out.limit;
-                out.close(span.s0 + (tau - start) / sigma_t, tau);
-            }
-            tau = start + whole;
-            end = span.s1;
-            out.cells_in_bin += 2;
-            if (out.cells_in_bin >= cells_max && !out.is_full()) out.close(end, tau);
-            return tau < depth_cut;
-        }
+        if (range.min == range.max) return filler.add_uniform(span.s0, span.s1, range.max);
         return for_each_cell(grid, local, span, [&](const CellSpan& cell) {
-            ++cells;
-            const float step = scale * cell.integral();
-            if (!(step > 0.0f)) return true;
-            open_at(cell.s0);
-            tau += step;
-            end = cell.s1;
-            ++out.cells_in_bin;
-            if ((out.cells_in_bin >= cells_max || tau > out.limit) && !out.is_full()) {
-                out.close(end, tau);
-            }
-            return tau < depth_cut;
+            return filler.add_cell(cell.s0, cell.s1, cell.integral());
         });
     });
-    if (started && out.cells_in_bin > 0) out.close(end, tau);
-    counts.cells += cells;
-    counts.uniform_bricks += uniform_bricks;
-    ++counts.rays;
-    counts.bins += bins.count;
+    filler.finish(counts);
 }
 
 /// Depth of one medium between two distances of a table's ray.
@@ -230,7 +149,10 @@ void bin_all(const Media& media, const Ray& ray, float t_end, float cut, RayBins
     for (const Volume& volume : media.volumes) {
         if (is_void(volume)) continue;
         RayBins own;
+        own.count = 0;
+        own.cells = 0;
         bin_one(volume, ray, t_end, cut, own, counts);
+        bins.cells += own.cells;
         for (int k = 0; k <= own.count && own.count > 0; ++k) {
             edges.push_back(own.t0 + static_cast<double>(own.s[k]));
         }
@@ -282,6 +204,7 @@ void make_ray_bins(const Media& media, const Ray& ray, float cut, RayBins& bins,
                    float t_end)
 {
     bins.count = 0;
+    bins.cells = 0;
     const int64_t met = counts.rays;
     if (const Volume* volume = single_volume(media)) {
         if (!is_void(*volume)) bin_one(*volume, ray, t_end, cut, bins, counts);
@@ -289,6 +212,19 @@ void make_ray_bins(const Media& media, const Ray& ray, float cut, RayBins& bins,
         bin_all(media, ray, t_end, cut, bins, counts);
     }
     counts.misses += counts.rays == met ? 1 : 0;
+}
+
+void make_ray_bins(const Media& media, std::span<const BinQuery> queries, float cut,
+                   BinCounts& counts)
+{
+    const Volume* volume = single_volume(media);
+    if (volume && !is_void(*volume)) {
+        bin_batch(*volume, queries, cut, counts);
+        return;
+    }
+    for (const BinQuery& query : queries) {
+        make_ray_bins(media, *query.ray, cut, *query.bins, counts, query.t_end);
+    }
 }
 
 float invert_bin(const Media& media, const Ray& ray, const RayBins& bins, int k, float tau)

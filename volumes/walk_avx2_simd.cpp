@@ -163,6 +163,7 @@ struct Lanes {
 
 }  // namespace
 
-const WalkKernels avx2_walk{step_all<Lanes>, integrate_all<Lanes>, march_all<Lanes>};
+const WalkKernels avx2_walk{step_all<Lanes>, integrate_all<Lanes>, tabulate_all<Lanes>,
+                            march_all<Lanes>};
 
 }  // namespace mote

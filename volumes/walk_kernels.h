@@ -48,6 +48,7 @@ struct PieceList {
     static constexpr size_t capacity = 1024;
 
     float p[3][capacity + lane_group];     ///< entry point in the brick, within [0,8]
+    float s[capacity + lane_group];        ///< how far the ray had come there [m]
     float length[capacity + lane_group];   ///< > 0 [m]
     int32_t brick[capacity + lane_group];  ///< number in BrickGrid::values
     int32_t ray[capacity + lane_group];    ///< in the RayBlock
@@ -64,7 +65,19 @@ struct BrickPiece {
 };
 static_assert(sizeof(BrickPiece) == 32);
 
-/// One form of the three loops. All forms give the same bits: each lane does the same IEEE
+/// What pieces hold up to the far end of each of their cells: row r is of the r-th cell, column i
+/// of the i-th piece in order. Rows behind a piece's last cell repeat that, as far as they are
+/// filled.
+struct CellTable {
+    static constexpr size_t most_cells = 22;  ///< of one piece: three axes of seven borders, and
+                                              ///< the start
+    static constexpr size_t capacity = 256;   ///< a multiple of lane_group
+
+    float end[most_cells][capacity];       ///< distance from the piece's start [m]
+    float integral[most_cells][capacity];  ///< [density units x m]
+};
+
+/// One form of the four loops. All forms give the same bits: each lane does the same IEEE
 /// operations whatever runs beside it.
 struct WalkKernels {
     /// Takes each of the first `count` rays (a multiple of lane_group) `steps` positions of the
@@ -77,6 +90,10 @@ struct WalkKernels {
     /// Quickest where pieces next to each other cross equally many cells.
     void (*integrate)(const float* values, const BrickPiece* pieces, const uint16_t* order,
                       size_t count, float* integral);
+    /// The same, cell by cell: column i of the table is of piece order[i]. count is at most the
+    /// table's capacity. A piece's last cell ends at its length.
+    void (*tabulate)(const float* values, const BrickPiece* pieces, const uint16_t* order,
+                     size_t count, CellTable& table);
     /// integral[i] = the same over the first `count` rays (a multiple of lane_group) by the
     /// midpoint rule, in steps of rays.step[i]; any value of at least rays.limit[i] where it
     /// exceeds that. lookups[i]: steps that looked anything up.

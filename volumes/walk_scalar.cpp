@@ -92,6 +92,7 @@ struct Lanes {
 
 }  // namespace
 
-const WalkKernels scalar_walk{step_all<Lanes>, integrate_all<Lanes>, march_all<Lanes>};
+const WalkKernels scalar_walk{step_all<Lanes>, integrate_all<Lanes>, tabulate_all<Lanes>,
+                              march_all<Lanes>};
 
 }  // namespace mote

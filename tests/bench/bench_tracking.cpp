@@ -7,6 +7,7 @@
 #include "volumes/cell_walk.h"
 #include "volumes/depth_batch.h"
 #include "volumes/procedural_bricks.h"
+#include "volumes/ray_bins.h"
 #include "volumes/tracking.h"
 #include "volumes/walk_isa.h"
 
@@ -184,6 +185,35 @@ void exact_cells(benchmark::State& state)
                                   static_cast<double>(camera_rays().size());
 }
 BENCHMARK(exact_cells)->Unit(benchmark::kMillisecond);
+
+/// Cells on the way to the bins of camera rays, so many rays at once; 1: each alone.
+void camera_bins(benchmark::State& state)
+{
+    const auto at_once = static_cast<size_t>(state.range(0));
+    const std::vector<Ray>& rays = camera_rays();
+    std::vector<RayBins> bins(at_once);
+    std::vector<BinQuery> queries;
+    BinCounts counts;
+    for (auto _ : state) {
+        for (size_t begin = 0; begin < rays.size(); begin += at_once) {
+            const size_t count = std::min(at_once, rays.size() - begin);
+            queries.clear();
+            for (size_t i = 0; i < count; ++i) {
+                queries.push_back({&rays[begin + i], infinity, &bins[i]});
+            }
+            if (at_once == 1) {
+                make_ray_bins(plume(), rays[begin], 1e-7f, bins[0], counts);
+            } else {
+                make_ray_bins(plume(), queries, 1e-7f, counts);
+            }
+            benchmark::DoNotOptimize(bins.data());
+        }
+    }
+    state.counters["per_item"] =
+        benchmark::Counter(static_cast<double>(counts.cells),
+                           benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+BENCHMARK(camera_bins)->Unit(benchmark::kMillisecond)->ArgName("at_once")->Arg(1)->Arg(8)->Arg(64);
 
 /// Rays in all directions from the same collisions.
 const std::vector<Ray>& isotropic_rays()

@@ -3,34 +3,19 @@
 #include <algorithm>
 #include <bit>
 
+#include "pinned_isa.h"
 #include "volumes.h"
 #include "volumes/depth_batch.h"
 #include "volumes/procedural_bricks.h"
-#include "volumes/walk_isa.h"
 
 namespace mote {
 namespace {
 
 using test::everything;
+using test::PinnedIsa;
+using test::supported_isas;
 using test::tilted;
 using test::volume_of;
-
-std::vector<Isa> supported_isas()
-{
-    std::vector<Isa> out;
-    for (const Isa isa : {Isa::Scalar, Isa::Avx2, Isa::Avx512}) {
-        if (is_supported(isa)) out.push_back(isa);
-    }
-    return out;
-}
-
-/// Pins the form for one test.
-struct PinnedIsa {
-    explicit PinnedIsa(Isa isa) { set_walk_isa(isa); }
-    ~PinnedIsa() { set_walk_isa(std::nullopt); }
-    PinnedIsa(const PinnedIsa&) = delete;
-    PinnedIsa& operator=(const PinnedIsa&) = delete;
-};
 
 std::shared_ptr<const BrickGrid> plume_bricks()
 {

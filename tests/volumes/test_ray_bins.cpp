@@ -91,23 +91,36 @@ Bounds3 bounds_of(const Media& media)
     return bounds;
 }
 
+std::vector<BinQuery> queries_of(const std::vector<Ray>& rays, std::vector<RayBins>& bins)
+{
+    std::vector<BinQuery> queries;
+    for (size_t i = 0; i < rays.size(); ++i) queries.push_back({&rays[i], infinity, &bins[i]});
+    return queries;
+}
+
 /// Calls f(media, ray, bins, tolerance) for rays through and around each case: from outside, from
-/// inside and past it.
+/// inside and past it; each with its bins made alone, and made side by side with the others'.
 void for_each_ray(float cut,
                   const std::function<void(const Case&, const Ray&, const RayBins&, double)>& f)
 {
     for (const Case& c : cases()) {
         const Bounds3 bounds = bounds_of(c.media);
         int met = 0;
-        for (uint32_t i = 0; i < 60; ++i) {
-            const Ray ray = test::test_ray(bounds, i);
+        std::vector<Ray> rays;
+        for (uint32_t i = 0; i < 60; ++i) rays.push_back(test::test_ray(bounds, i));
+        std::vector<RayBins> side_by_side(rays.size());
+        BinCounts counts;
+        make_ray_bins(c.media, queries_of(rays, side_by_side), cut, counts);
+        for (size_t i = 0; i < rays.size(); ++i) {
             RayBins bins;
-            BinCounts counts;
-            make_ray_bins(c.media, ray, cut, bins, counts);
-            const double whole = static_cast<double>(optical_depth(c.media, ray, {0.0f, infinity}));
+            make_ray_bins(c.media, rays[i], cut, bins, counts);
+            const double whole =
+                static_cast<double>(optical_depth(c.media, rays[i], {0.0f, infinity}));
+            const double tolerance = c.tolerance * whole + rounding(c.media, bins);
             met += bins.empty() ? 0 : 1;
             SCOPED_TRACE(std::string(c.name) + ", ray " + std::to_string(i));
-            f(c, ray, bins, c.tolerance * whole + rounding(c.media, bins));
+            f(c, rays[i], bins, tolerance);
+            f(c, rays[i], side_by_side[i], tolerance);
             if (testing::Test::HasFailure()) return;
         }
         if (optical_depth(c.media, {bounds.centre(), test::along_x.d}, {0.0f, infinity}) > 0.0f) {
@@ -211,7 +224,7 @@ TEST(RayBins, TheWalkEndsWhereNoLightGetsThrough)
         const float t = bins.world_t(bins.s[bins.count]);
         EXPECT_NEAR(bins.depth(), optical_depth(c.media, ray, {0.0f, t}), tolerance);
     });
-    EXPECT_GT(cut_rays, 20);
+    EXPECT_GT(cut_rays, 40);
 }
 
 TEST(RayBins, ThinMediaAreBinnedEveryFewCellsAndDenseOnesByTransmittance)
@@ -345,6 +358,9 @@ TEST(RayBins, RaysThatMissAndRaysThatAreNonsense)
         EXPECT_TRUE(bins.empty());
         EXPECT_EQ(bins.depth(), 0.0f);
         EXPECT_EQ(depth_to(media, ray, bins, 1.0f), 0.0f);
+        make_ray_bins(media_of({media.volumes[0]}), std::vector<BinQuery>{{&ray, infinity, &bins}},
+                      0.0f, counts);
+        EXPECT_TRUE(bins.empty());
         EXPECT_EQ(counts.bins, 0);
     }
 }
