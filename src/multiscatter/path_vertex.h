@@ -24,6 +24,7 @@ struct PathVertex {
                                    ///< vertices their share of the pixel's light
     Vec3 wo{0.0f};                 ///< with `lobe`, how directions are proposed: of first vertices
     Phase lobe;                    ///< as it scatters, else for all together that look at it
+    float drawn = 1.0f;            ///< of first ones: times as often as by what collides there
     /// Paths do; places that were drawn around lamps are looked at for lamps' light alone.
     bool goes_on = true;
     float carried = 1.0f;  ///< weight in the image of the path that has found it

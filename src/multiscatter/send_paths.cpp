@@ -70,11 +70,10 @@ class PathSender {
         float sum = 0.0f;
         for (size_t i = 0; i < members.size(); ++i) {
             const PathVertex& v = level_.vertices[static_cast<size_t>(members[i])];
-            scratch_.shares[i] = is_first_ ? max_component(v.weight) : 1.0f;
+            scratch_.shares[i] = is_first_ ? v.drawn * max_component(v.weight) : 1.0f;
             sum += scratch_.shares[i];
         }
         for (float& share : scratch_.shares) share /= sum;
-        path_weight_ = sum / static_cast<float>(members.size());
         return sum > 0.0f;
     }
 
@@ -121,7 +120,7 @@ class PathSender {
         const TracedSegment segment = trace_segment(context_.trace, light_ray, false, rng_);
         PathVertex found;
         found.from = from;
-        found.carried = is_first_ ? path_weight_ : v.carried;
+        found.carried = is_first_ ? max_component(v.weight) / expected : v.carried;
         Spectrum known(0.0f);
         if (segment.collision) {
             const Collision& c = *segment.collision;
@@ -244,7 +243,6 @@ class PathSender {
     PathLevel& next_;
     Rng& rng_;
     NearLamps near_;
-    float path_weight_ = 0.0f;  ///< in the image, of each path that a first group sends
     GroupScratch scratch_;
 };
 

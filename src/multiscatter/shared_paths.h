@@ -18,6 +18,8 @@ struct PathSharing {
     int levels = 2;  ///< of vertices, from the first ones on; behind them each has its own path
     float near_share = 0.25f;  ///< places near lamps that are looked at besides, per path
     const MeanRadiance* known = nullptr;  ///< what is not shared, as it is known; null: nothing
+    const MeanRadiance* guide = nullptr;  ///< what first events are drawn by; null: by what
+                                          ///< collides. Read where they are drawn.
 };
 
 /// How far sharing pays. Where walks are long (`mean_events`) and lobes narrow, so that few of a

@@ -50,8 +50,8 @@ Spectrum seen_background(const PassInputs& inputs, const PassKey& key, const Pix
     if (scene.environment && !domain.surface) {
         sum += transmittance * environment_radiance(*scene.environment, domain.ray.d);
     }
-    if (has_lamp_rays(inputs, key)) return sum;
     inputs.domain.lamp_surfaces->for_each_on_ray(domain.ray, [&](int index) {
+        if (has_lamp_rays(inputs, key, index)) return;
         const Light& light = scene.lights[static_cast<size_t>(index)];
         const std::optional<LightHit> hit = hit_light(light, domain.ray.o, domain.ray.d);
         if (hit && clear_distance(hit->distance) <= domain.t_end()) {
@@ -90,21 +90,20 @@ void add_first_collision(const PassInputs& inputs, const PixelDomain& domain,
 }
 
 /// Of what ends the ray: its emission, normal and place, and the domain of its samples.
-void begin_surface(const PassInputs& inputs, const PassKey& key, PassDomain& domain,
-                   FilmSample& sample)
+void begin_surface(const PassInputs& inputs, const PassKey& key, const PixelDomain& media,
+                   SurfaceDomain& domain, FilmSample& sample)
 {
-    domain.surface = {};
-    if (!domain.media.surface) return;
+    domain = {};
+    if (!media.surface) return;
     Rng rng = pass_rng(inputs, key, Stream::Surface);
-    domain.surface = make_surface_domain(inputs.domain, domain.media, rng.uniform());
-    const SurfaceVertex& v = domain.surface.v;
-    const Vec3 wo = domain.surface.wo;
-    sample.surface_emission = sample.transmittance * surface_emission(v, wo);
+    domain = make_surface_domain(inputs.domain, media, rng.uniform());
+    const SurfaceVertex& v = domain.v;
+    sample.surface_emission = sample.transmittance * surface_emission(v, domain.wo);
     sample.transmittance = 0.0f;
     sample.has_surface = true;
-    sample.normal = glm::dot(v.ng, wo) > 0.0f ? v.ns : -v.ns;
+    sample.normal = glm::dot(v.ng, domain.wo) > 0.0f ? v.ns : -v.ns;
     sample.position = v.p;
-    sample.surface_distance = domain.surface.distance;
+    sample.surface_distance = domain.distance;
     sample.material = inputs.domain.scene->surfaces->material_index(v.object);
 }
 
@@ -153,9 +152,14 @@ Ray camera_ray(const PassInputs& inputs, const PassKey& key)
 
 Ray stratum_ray(const PassInputs& inputs, const PassKey& key, int sx, int sy, int strata, Rng& rng)
 {
+    const float size = 1.0f / static_cast<float>(strata);
+    return ray_within(inputs, Vec2(key.x, key.y) + size * Vec2(sx, sy), Vec2(size), rng);
+}
+
+Ray ray_within(const PassInputs& inputs, Vec2 corner, Vec2 size, Rng& rng)
+{
     const Camera& camera = inputs.domain.scene->camera;
-    const Vec2 film =
-        Vec2(key.x, key.y) + (Vec2(sx, sy) + rng.uniform2()) / static_cast<float>(strata);
+    const Vec2 film = corner + size * rng.uniform2();
     const Vec2 lens = camera.lens_radius > 0.0f ? rng.uniform2() : Vec2(0.5f);
     return generate_ray(camera, film, lens, inputs.domain.has_motion ? rng.uniform() : 0.0f);
 }
@@ -171,21 +175,19 @@ std::optional<FilmSample> uniform_tile(const PassInputs& inputs, const Tile& til
     return sample;
 }
 
-void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray, int owner,
-                PassDomain& domain, TileRays& rays, std::vector<PathVertex>& first,
+void begin_pass(const PassInputs& inputs, const PassKey& key, const PixelDomain& media, int owner,
+                SurfaceDomain& surface_domain, TileRays& rays, std::vector<PathVertex>& first,
                 FilmSample& sample, PassCounts& counts)
 {
     const FrameDomain& frame = inputs.domain;
     const Scene& scene = *frame.scene;
+    const Ray& ray = media.ray;
     const PassSequence numbers = pass_numbers(inputs, key);
-    const int64_t cells_before = counts.bins.cells;
-    PixelDomain& media = domain.media;
-    make_pixel_domain(frame, ray, media, counts.bins);
 
     sample.optical_depth = media.bins.depth();
     sample.transmittance = std::exp(-sample.optical_depth);
     sample.exact_rays = media.bins.empty() ? 0.0f : 1.0f;
-    sample.work.y = static_cast<float>(counts.bins.cells - cells_before);
+    sample.work.y = static_cast<float>(media.bins.cells);
     if (inputs.aovs.has(Aov::OpticalDepth) && sample.transmittance <= frame.transmittance_cut) {
         // The bins may end before the media do.
         sample.optical_depth = optical_depth(scene.media, ray, {0.0f, media.t_end()});
@@ -196,8 +198,8 @@ void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray, in
         sample.emission = emission_along(frame, media, rng);
         ++counts.emission_integrals;
     }
-    begin_surface(inputs, key, domain, sample);
-    const SurfaceVertex* surface = media.surface ? &domain.surface.v : nullptr;
+    begin_surface(inputs, key, media, surface_domain, sample);
+    const SurfaceVertex* surface = media.surface ? &surface_domain.v : nullptr;
     const bool is_empty = media.bins.empty() && !surface;
     if (is_empty && !inputs.aovs.needs_motion()) return;
     if (inputs.aovs.needs_first_collision()) {

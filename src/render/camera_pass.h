@@ -78,25 +78,21 @@ struct PassCounts {
 /// That ray: place on the film, on the lens and in time.
 [[nodiscard]] Ray camera_ray(const PassInputs& inputs, const PassKey& key);
 
+/// A ray through a part of the film, from its low corner on.
+[[nodiscard]] Ray ray_within(const PassInputs& inputs, Vec2 corner, Vec2 size, Rng& rng);
+
 /// A ray of the same pixel through one stratum of `strata` a side.
 [[nodiscard]] Ray stratum_ray(const PassInputs& inputs, const PassKey& key, int sx, int sy,
                               int strata, Rng& rng);
 
-/// Where a pixel's samples live in a pass: in the media along its ray, and on the surface at its
-/// end.
-struct PassDomain {
-    PixelDomain media;
-    SurfaceDomain surface;
-};
-
-/// Tabulates the media along the pixel's camera ray, up to a surface, and fills all parts of the
-/// sample that need no reservoir: background and alpha in closed form, emission by one point per
-/// brick with exact transmittance, lights at infinity by control variate (corrections go to `rays`
-/// under `owner`), two and more events. Pixels without smoke cost a bounds test.
-/// Where paths are shared (shares_paths), events in media are put to `first` for
+/// From the media along the pixel's camera ray, up to a surface, makes the domain of that surface's
+/// samples and fills all parts of the sample that need no reservoir: background and alpha in closed
+/// form, emission by one point per brick with exact transmittance, lights at infinity by control
+/// variate (corrections go to `rays` under `owner`), two and more events. Pixels without smoke cost
+/// a bounds test. Where paths are shared (shares_paths), events in media are put to `first` for
 /// light_shared_paths.
-void begin_pass(const PassInputs& inputs, const PassKey& key, const Ray& ray, int owner,
-                PassDomain& domain, TileRays& rays, std::vector<PathVertex>& first,
+void begin_pass(const PassInputs& inputs, const PassKey& key, const PixelDomain& media, int owner,
+                SurfaceDomain& surface, TileRays& rays, std::vector<PathVertex>& first,
                 FilmSample& sample, PassCounts& counts);
 
 /// What every pass of every pixel of a tile shows, if that is one and the same: a constant

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "multiscatter/cached_lights.h"
 #include "multiscatter/residual_walk.h"
@@ -13,12 +14,50 @@
 namespace mote {
 namespace {
 
-/// The scattering event in a medium at optical depth tau; its albedo, black if there is none.
-Spectrum medium_event(const Scene& scene, const PixelDomain& domain, float tau, float choice,
-                      ScatterEvent& event)
+/// Share of the ray's mean radiance that counts everywhere at least, where paths start by it.
+constexpr float least_radiance = 0.2f;
+
+/// Where paths start on a ray: in proportion to what collides there, or to that times what is known
+/// to be scattered.
+class FirstEvents {
+  public:
+    /// `lost`: share of what collides on the ray. `guide`: may be null.
+    FirstEvents(const FrameDomain& frame, const PixelDomain& domain, float lost,
+                const MeanRadiance* guide)
+        : frame_(frame), domain_(domain), lost_(lost)
+    {
+        if (!guide) return;
+        guided_ = domain;
+        const RayBins& bins = domain.bins;
+        float radiance[RayBins::capacity + 1];
+        for (int k = 0; k <= bins.count; ++k) {
+            radiance[k] = luminance(guide->at(domain.ray.at(bins.world_t(bins.s[k]))));
+        }
+        weigh_bins_by(radiance, least_radiance, *guided_);
+    }
+
+    /// The event of a number in [0, 1). Weight 0: there is none.
+    [[nodiscard]] RayPoint at(float u) const
+    {
+        if (guided_) return point_at(frame_, *guided_, u);
+        RayPoint point;
+        const float tau = -std::log1p(-u * lost_);
+        point.s = distance_at(frame_.scene->media, domain_.ray, domain_.bins, tau);
+        point.x = domain_.ray.at(domain_.bins.world_t(point.s));
+        point.weight = lost_;
+        return point;
+    }
+
+  private:
+    const FrameDomain& frame_;
+    const PixelDomain& domain_;
+    float lost_;
+    std::optional<PixelDomain> guided_;
+};
+
+/// Sets what scatters at an event in a medium; returns its albedo, black if there is none.
+Spectrum choose_scatterer(const Scene& scene, float choice, ScatterEvent& event)
 {
-    event.x =
-        domain.ray.at(domain.bins.world_t(distance_at(scene.media, domain.ray, domain.bins, tau)));
     Spectrum albedo(0.0f);
     float before = 0.0f;
     for_each_scatterer(scene.media, event.x, event.time,
@@ -38,12 +77,13 @@ TraceContext context_with(const PassInputs& inputs, const CachedGuesses& guesses
             &guesses.shadows,     guesses.guide(), &inputs.aims};
 }
 
-PathVertex first_vertex(const ScatterEvent& event, Spectrum weight, int owner)
+PathVertex first_vertex(const ScatterEvent& event, Spectrum weight, float drawn, int owner)
 {
     PathVertex v;
     v.x = event.x;
     v.phase = event.phase;
     v.weight = weight;
+    v.drawn = drawn;
     v.wo = event.wo;
     v.lobe = *event.phase;
     v.from = owner;
@@ -57,15 +97,17 @@ float add_paths_from_media(const PassInputs& inputs, const TraceContext& context
                            std::vector<PathVertex>& first, FilmSample& sample)
 {
     const float step = 1.0f / paths_worth(lost, inputs.domain.params.indirect_paths);
-    const float weight = lost * step;
+    const FirstEvents events(inputs.domain, domain, lost,
+                             inputs.sharing ? inputs.sharing->guide : nullptr);
     float cut = 0.0f;
     for (float u = rng.uniform() * step; u < 1.0f; u += step) {
-        const float tau = -std::log1p(-u * lost);
-        ScatterEvent event{Vec3(0.0f), domain.wo(), domain.ray.time};
-        const Spectrum albedo = medium_event(context.scene, domain, tau, rng.uniform(), event);
-        if (!event.phase) continue;
+        const RayPoint point = events.at(u);
+        const float weight = step * point.weight;
+        ScatterEvent event{point.x, domain.wo(), domain.ray.time};
+        const Spectrum albedo = choose_scatterer(context.scene, rng.uniform(), event);
+        if (!event.phase || !(weight > 0.0f)) continue;
         if (inputs.sharing) {
-            first.push_back(first_vertex(event, weight * albedo, owner));
+            first.push_back(first_vertex(event, weight * albedo, lost / point.weight, owner));
             continue;
         }
         const PathResult path = inputs.radiance

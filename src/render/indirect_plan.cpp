@@ -30,12 +30,11 @@ bool finds_sky_by_paths(const Scene& scene, const RenderDescription& render)
            render.path.light_strategy == LightStrategy::Auto;
 }
 
-/// Whether the mean radiance in the media is worth knowing where paths are shared: not around small
-/// lamps, where no coarse guess is close, nor where walks are cut short.
-bool knows_mean_radiance(const Scene& scene, const RenderDescription& render)
+/// Whether it pays to leave the mean radiance out of paths that are shared: not around small lamps,
+/// where no coarse guess is close, nor where walks are cut short.
+bool leaves_mean_out(const Scene& scene, const RenderDescription& render)
 {
-    return render.path.max_bounces >= enough_bounces && media_in_view(scene) &&
-           !has_small_lamps(scene);
+    return render.path.max_bounces >= enough_bounces && !has_small_lamps(scene);
 }
 
 /// Share of the picture's tiles that may see media.
@@ -116,14 +115,22 @@ IndirectGuesses guess_indirect(const IndirectInputs& inputs)
     }
     if (!shares_paths(scene, render) || !inputs.caches.extinction) return out;
     out.sharing.emplace();
-    if (!knows_mean_radiance(scene, render)) return out;
+    out.leaves_mean_out = leaves_mean_out(scene, render);
+    if (!media_in_view(scene) || !(out.leaves_mean_out || render.restir.indirect_guide)) return out;
     RadianceCache cache = trace_radiance(inputs, guesses, share_for_mean);
     out.cpu_seconds = cache.cpu_seconds;
-    out.sharing = sharing_for(scene.media, cache.mean_events);
-    out.known = mean_radiance(std::move(cache));
+    if (out.leaves_mean_out) out.sharing = sharing_for(scene.media, cache.mean_events);
+    out.mean = mean_radiance(std::move(cache));
     const int frames = inputs.is_same ? frames_at_rest : frames_in_motion;
-    if (inputs.before) blend_in(*inputs.before, frames - 1, *out.known);
+    if (inputs.before) blend_in(*inputs.before, frames - 1, *out.mean);
     return out;
+}
+
+void point_to_mean(const RestirParams& params, IndirectGuesses& guesses)
+{
+    if (!guesses.mean) return;
+    if (guesses.leaves_mean_out) guesses.sharing->known = &*guesses.mean;
+    if (params.indirect_guide) guesses.sharing->guide = &*guesses.mean;
 }
 
 }  // namespace mote

@@ -31,9 +31,10 @@ namespace mote {
 struct IndirectGuesses {
     std::optional<ScatterNodes> nodes;      ///< of previews
     std::optional<RadianceCache> radiance;  ///< for residual walks
-    std::optional<PathSharing> sharing;     ///< of paths; `known` is the caller's to set
-    std::optional<MeanRadiance> known;      ///< where paths are shared, but not around small lamps
-                                            ///< nor where walks are cut short
+    std::optional<PathSharing> sharing;     ///< of paths; see point_to_mean
+    std::optional<MeanRadiance> mean;       ///< where paths are shared and it serves them
+    bool leaves_mean_out = false;  ///< of what is shared: not around small lamps nor where walks
+                                   ///< are cut short
     double cpu_seconds = 0.0;
 };
 
@@ -53,5 +54,8 @@ struct IndirectInputs {
 /// the mean radiance, in both cases of as many as there would be if all tiles that see media were
 /// full of them.
 [[nodiscard]] IndirectGuesses guess_indirect(const IndirectInputs& inputs);
+
+/// Lets `sharing` use the mean radiance, where the guesses stay.
+void point_to_mean(const RestirParams& params, IndirectGuesses& guesses);
 
 }  // namespace mote

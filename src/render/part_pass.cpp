@@ -11,29 +11,19 @@ namespace {
 /// alike.
 constexpr size_t shaded_alone = 4;
 
-}  // namespace
-
-void PartScratch::clear()
-{
-    samples.clear();
-    rays.clear();
-    surface_rays.clear();
-    lamp_rays.clear();
-    first.clear();
-}
-
-void trace_part(const PassInputs& inputs, const PassKey& key, const PixelPart& part,
+void trace_part(const PassInputs& inputs, const DuePart& due, PixelDomain& domain,
                 PartScratch& scratch, PassCounts& counts)
 {
+    const PassKey& key = due.key;
     const FrameDomain& frame = inputs.domain;
     const auto owner = static_cast<int>(scratch.samples.size());
     FilmSample& sample = scratch.samples.emplace_back();
-    sample.weight = part.weight;
-    begin_pass(inputs, key, part.ray, owner, scratch.domain, scratch.rays, scratch.first, sample,
+    sample.weight = due.part.weight;
+    const SurfaceDomain& surface = scratch.surface;
+    begin_pass(inputs, key, domain, owner, scratch.surface, scratch.rays, scratch.first, sample,
                counts);
     if (inputs.render.path.max_bounces == 0) return;
-    if (scratch.domain.surface.is_sampled()) {
-        const SurfaceDomain& surface = scratch.domain.surface;
+    if (surface.is_sampled()) {
         SurfaceChoice& choice = scratch.choice;
         resample_surface(inputs, key, surface, shaded_alone, choice, counts);
         for (const PixelReservoir& kept : choice.kept) {
@@ -42,7 +32,6 @@ void trace_part(const PassInputs& inputs, const PassKey& key, const PixelPart& p
         ask_for_lights_apart(surface, choice, owner, scratch.surface_rays);
         sample.work.x += static_cast<float>(choice.candidates.size());
     }
-    PixelDomain& domain = scratch.domain.media;
     if (!frame.has_sampled_lights() || domain.bins.empty()) return;
     weigh_bins(frame, domain);
     Rng rng = pass_rng(inputs, key, Stream::Initial);
@@ -55,6 +44,28 @@ void trace_part(const PassInputs& inputs, const PassKey& key, const PixelPart& p
         scratch.rays.exact.add(owner, c.x, c.arrival.wi, c.arrival.distance, domain.ray.time,
                                weight, depth_that_matters(weight, luminance(sample.L())));
     }
+}
+
+}  // namespace
+
+void PartScratch::clear()
+{
+    samples.clear();
+    rays.clear();
+    surface_rays.clear();
+    lamp_rays.clear();
+    first.clear();
+}
+
+void trace_parts(const PassInputs& inputs, std::span<const DuePart> parts, PartScratch& scratch,
+                 PassCounts& counts)
+{
+    for_each_domain(
+        inputs.domain, parts.size(), [&](size_t i) -> const Ray& { return parts[i].part.ray; },
+        scratch.domains, counts.bins,
+        [&](size_t i, PixelDomain& domain) {
+            trace_part(inputs, parts[i], domain, scratch, counts);
+        });
 }
 
 void shade_parts(const PassInputs& inputs, const PassKey& key, PartScratch& scratch,

@@ -59,30 +59,61 @@ void split_at_surfaces(const Scene& scene, uint8_t strata, SplitMap& map)
     });
 }
 
-void split_at_lamps(const Scene& scene, uint8_t strata, SplitMap& map)
+/// Spheres and quads that rays can meet: those of LampSurfaces.
+bool is_lamp(const Light& light)
+{
+    return (std::holds_alternative<SphereLight>(light) ||
+            std::holds_alternative<QuadLight>(light)) &&
+           light_power(light, 1.0f) > 0.0f;
+}
+
+float lamp_radiance(const Light& lamp)
+{
+    const auto* sphere = std::get_if<SphereLight>(&lamp);
+    return luminance(sphere ? sphere->radiance : std::get<QuadLight>(lamp).radiance);
+}
+
+std::vector<std::optional<FilmBox>> film_boxes(const Scene& scene)
+{
+    const std::vector<Trs> poses = shutter_poses(scene.camera);
+    std::vector<std::optional<FilmBox>> boxes(scene.lights.size());
+    parallel_for(boxes.size(), 1024, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            if (is_lamp(scene.lights[i])) boxes[i] = film_box(scene.camera, poses, scene.lights[i]);
+        }
+    });
+    return boxes;
+}
+
+void split_at_lamps(const Scene& scene, uint8_t strata, PixelSplits& splits)
 {
     const Camera& camera = scene.camera;
     LampMarks marks(camera, 0.5f);
+    std::vector<FilmBox> boxes(scene.lights.size());
     std::vector<Light> wide;
     bool has_lamps = false;
-    const auto add = [&](const Light& light, Spectrum radiance) {
+    const std::vector<std::optional<FilmBox>> found = film_boxes(scene);
+    for (size_t i = 0; i < scene.lights.size(); ++i) {
+        const Light& light = scene.lights[i];
+        if (!is_lamp(light)) continue;
         has_lamps = true;
-        if (!marks.add(light_bounds(light), luminance(radiance))) wide.push_back(light);
-    };
-    for (const Light& light : scene.lights) {
-        if (const auto* sphere = std::get_if<SphereLight>(&light)) add(light, sphere->radiance);
-        if (const auto* quad = std::get_if<QuadLight>(&light)) add(light, quad->radiance);
+        if (found[i]) {
+            boxes[i] = *found[i];
+        } else if (!marks.add(light_bounds(light), lamp_radiance(light))) {
+            wide.push_back(light);
+        }
     }
     if (!has_lamps) return;
-    map = SplitMap(camera.width, camera.height, 1);
-    marks.mark(strata, 1.0f, map);
+    splits.lamps = SplitMap(camera.width, camera.height, 1);
+    marks.mark(strata, 1.0f, splits.lamps);
+    splits.lists = list_lamps(std::move(boxes), strata, splits.lamps);
     const LampSurfaces index(wide);
     if (index.is_empty()) return;
     for_each_tile(camera.width, camera.height, [&](const Tile& tile) {
         mark_edges<Spectrum>(
             camera, tile, strata,
             [&](const Ray& ray, Spectrum /*near*/) { return lamp_light(wide, index, ray); },
-            emits_alike, map);
+            emits_alike, splits.lamps);
     });
 }
 
@@ -94,7 +125,7 @@ PixelSplits find_split_pixels(const Scene& scene, int strata)
     if (strata < 2) return splits;
     const auto mark = static_cast<uint8_t>(strata);
     if (scene.surfaces) split_at_surfaces(scene, mark, splits.parts);
-    split_at_lamps(scene, mark, splits.lamps);
+    split_at_lamps(scene, mark, splits);
     return splits;
 }
 

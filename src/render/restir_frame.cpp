@@ -18,6 +18,7 @@ namespace {
 struct TileScratch {
     PartScratch traced;
     std::vector<PixelPart> parts;
+    std::vector<DuePart> due;
     std::vector<size_t> first;  ///< of each pixel's parts in `traced`, and their end
     std::vector<PixelFilm> pixels;
 };
@@ -26,20 +27,22 @@ void trace_tile_pass(const PassInputs& inputs, const Tile& tile, uint32_t pass,
                      TileScratch& scratch, PassCounts& counts)
 {
     scratch.traced.clear();
+    scratch.due.clear();
     scratch.first.clear();
     for (int y = tile.y0; y < tile.y1; ++y) {
         for (int x = tile.x0; x < tile.x1; ++x) {
-            scratch.first.push_back(scratch.traced.samples.size());
+            scratch.first.push_back(scratch.due.size());
             PassKey key{x, y, pass};
             split_pixel(inputs, key, camera_ray(inputs, key), scratch.parts);
             look_for_lamps(inputs, key, static_cast<int>(scratch.first.back()),
                            1.0f / scratch.parts[0].weight, scratch.traced.lamp_rays);
             for (const PixelPart& part : scratch.parts) {
-                trace_part(inputs, key, part, scratch.traced, counts);
+                scratch.due.push_back({key, part});
                 ++key.part;
             }
         }
     }
+    trace_parts(inputs, scratch.due, scratch.traced, counts);
     scratch.first.push_back(scratch.traced.samples.size());
     shade_parts(inputs, {tile.x0, tile.y0, pass}, scratch.traced, counts);
 }
@@ -95,7 +98,7 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
     IndirectGuesses guesses =
         guess_indirect({scene, render, lights, *history.caches, aims, plan.paths,
                         uses_known ? &*history.known : nullptr, is_same});
-    if (guesses.known) guesses.sharing->known = &*guesses.known;
+    point_to_mean(render.restir, guesses);
     stats.cache_cpu_seconds += guesses.cpu_seconds;
     Buffer2D<Spectrum> path_light;
     if (plan.paths) path_light = {scene.camera.width, scene.camera.height};
@@ -130,7 +133,7 @@ bool render_restir(const Scene& scene, const RenderDescription& render, const Ao
                                       keeps_passes ? &history.pixels : nullptr);
     }
     if (!plan.paths) history.paths = {};
-    history.known = keeps_history ? std::move(guesses.known) : std::nullopt;
+    history.known = keeps_history ? std::move(guesses.mean) : std::nullopt;
     history.last = keeps_history ? domain : FrameDomain{};
     stats.truncation = counts.truncation;
     stats.camera_rays = counts.bins.rays + static_cast<int64_t>(counts.lamps.rays);

@@ -118,61 +118,69 @@ void ReusingFrame::fill_initial(const Tile& tile, uint32_t pass, const DomainSto
     std::vector<Candidate> candidates;
     std::vector<CandidateRange> ranges;
     std::vector<FilmSample*> samples;
-    PassDomain pass_domain;
-    PixelDomain& domain = pass_domain.media;
     std::vector<PathVertex> first_vertices;
     std::vector<PixelPart> parts;
+    std::vector<DuePart> main_parts;
+    std::vector<DuePart> other_parts;
     PartScratch traced;
     std::vector<OtherPart> others;
     for (int y = tile.y0; y < tile.y1; ++y) {
         for (int x = tile.x0; x < tile.x1; ++x) {
             const PassKey key{x, y, pass};
-            FilmSample& sample = buffers.samples.at(x, y);
-            sample = {};
+            buffers.samples.at(x, y) = {};
             buffers.acceptance.at(x, y) = {};
-            const auto owner = static_cast<int>(samples.size());
-            samples.push_back(&sample);
             const Ray ray = kept ? kept->ray(x, y) : camera_ray(inputs, key);
-            if (!kept) {
-                split_pixel(inputs, key, ray, parts);
-                sample.weight = parts[0].weight;
-                for (uint32_t i = 1; i < parts.size(); ++i) {
-                    trace_part(inputs, {x, y, pass, i}, parts[i], traced, n);
-                    others.push_back({pixel_index(x, y), {}});
-                }
-            }
-            look_for_lamps(inputs, key, owner, 1.0f / sample.weight, lamp_rays);
-            begin_pass(inputs, key, ray, owner, pass_domain, corrections, first_vertices, sample,
-                       n);
-            if (inputs.render.path.max_bounces == 0) pass_domain.surface.share = 0.0f;
-            if (now.surfaces.size() > 0) now.surfaces.at(x, y) = pass_domain.surface;
-            const size_t first = candidates.size();
-            const bool is_lit = frame.has_sampled_lights() && !domain.bins.empty() &&
-                                inputs.render.path.max_bounces > 0;
-            if (is_lit) {
-                weigh_bins(frame, domain);
-                Rng numbers = pass_rng(inputs, key, Stream::Initial);
-                draw_candidates(frame, domain, frame.params.candidates, numbers, candidates);
-            }
-            if (!is_lit || !reuses_media) domain.bins.count = 0;  // no event to remember
-            now.domains.store(x, y, domain);
-            ranges.push_back({first, candidates.size() - first});
-            sample.exact_rays += static_cast<float>(candidates.size() - first);
-            sample.work.x = static_cast<float>(candidates.size() - first);
-            for (size_t i = first; i < candidates.size(); ++i) {
-                const Candidate& c = candidates[i];
-                if (frame.params.visibility == TargetVisibility::Cached) {
-                    candidates[i].f *= cached_visibility(frame, c.y, c.x, c.arrival);
-                } else {
-                    const float tau_max =
-                        reuses_media ? infinity
-                                     : depth_that_matters(c.f / c.density, luminance(sample.L()));
-                    shadows.add(static_cast<int>(i), c.x, c.arrival.wi, c.arrival.distance,
-                                domain.ray.time, c.f, tau_max);
-                }
+            parts.assign(1, {ray, 1.0f});
+            if (!kept) split_pixel(inputs, key, ray, parts);
+            main_parts.push_back({key, parts[0]});
+            for (uint32_t i = 1; i < parts.size(); ++i) {
+                other_parts.push_back({{x, y, pass, i}, parts[i]});
+                others.push_back({pixel_index(x, y), {}});
             }
         }
     }
+    trace_parts(inputs, other_parts, traced, n);
+    const auto begin_pixel = [&](size_t i, PixelDomain& domain) {
+        const PassKey& key = main_parts[i].key;
+        FilmSample& sample = buffers.samples.at(key.x, key.y);
+        const auto owner = static_cast<int>(i);
+        samples.push_back(&sample);
+        sample.weight = main_parts[i].part.weight;
+        look_for_lamps(inputs, key, owner, 1.0f / sample.weight, lamp_rays);
+        SurfaceDomain surface;
+        begin_pass(inputs, key, domain, owner, surface, corrections, first_vertices, sample, n);
+        if (inputs.render.path.max_bounces == 0) surface.share = 0.0f;
+        if (now.surfaces.size() > 0) now.surfaces.at(key.x, key.y) = surface;
+        const size_t first = candidates.size();
+        const bool is_lit = frame.has_sampled_lights() && !domain.bins.empty() &&
+                            inputs.render.path.max_bounces > 0;
+        if (is_lit) {
+            weigh_bins(frame, domain);
+            Rng numbers = pass_rng(inputs, key, Stream::Initial);
+            draw_candidates(frame, domain, frame.params.candidates, numbers, candidates);
+        }
+        if (!is_lit || !reuses_media) domain.bins.count = 0;  // no event to remember
+        now.domains.store(key.x, key.y, domain);
+        ranges.push_back({first, candidates.size() - first});
+        sample.exact_rays += static_cast<float>(candidates.size() - first);
+        sample.work.x = static_cast<float>(candidates.size() - first);
+        for (size_t j = first; j < candidates.size(); ++j) {
+            Candidate& c = candidates[j];
+            if (frame.params.visibility == TargetVisibility::Cached) {
+                c.f *= cached_visibility(frame, c.y, c.x, c.arrival);
+            } else {
+                const float tau_max =
+                    reuses_media ? infinity
+                                 : depth_that_matters(c.f / c.density, luminance(sample.L()));
+                shadows.add(static_cast<int>(j), c.x, c.arrival.wi, c.arrival.distance,
+                            domain.ray.time, c.f, tau_max);
+            }
+        }
+    };
+    std::vector<PixelDomain> domains;
+    for_each_domain(
+        frame, main_parts.size(), [&](size_t i) -> const Ray& { return main_parts[i].part.ray; },
+        domains, n.bins, begin_pixel);
     shade_parts(inputs, {tile.x0, tile.y0, pass, 1}, traced, n);
     for (size_t i = 0; i < others.size(); ++i) others[i].sample = traced.samples[i];
     if (!others.empty()) {

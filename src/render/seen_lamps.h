@@ -5,12 +5,15 @@
 
 namespace mote {
 
-/// Whether the lamps that a pixel sees have rays of their own in its passes.
-[[nodiscard]] bool has_lamp_rays(const PassInputs& inputs, const PassKey& key);
+/// Whether a lamp, in the pixel, has rays of its own in the pixel's passes.
+[[nodiscard]] bool has_lamp_rays(const PassInputs& inputs, const PassKey& key, int light);
 
-/// Stratified camera rays through the pixel, where has_lamp_rays(): of those that meet a lamp, any
-/// one, as likely as the others, is asked for its transmittance, for all of them. `weight`: of what
-/// they bring to `owner`. Cost: 0.05 to 0.1 us per stratum, and a ray through the media per lamp.
+/// Stratified camera rays to the lamps that have rays of their own: of those that meet a lamp, any
+/// one, as likely as the others, is asked for its transmittance, for all of them. Lamps in the
+/// pixel's list are looked for where they are on the film (their boxes), so that a lamp down to a
+/// hundredth of the pixel's width is found by most rays; others all over the pixel. `weight`: of
+/// what they bring to `owner`. Cost: 0.03 to 0.1 us per stratum, and a ray through the media per
+/// lamp.
 void look_for_lamps(const PassInputs& inputs, const PassKey& key, int owner, float weight,
                     LightRays& rays);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "restir/incident_light.h"
 
@@ -15,6 +16,13 @@ constexpr float weight_floor = 0.05f;
 /// falls with transmittance, below what floats can tell from nothing.
 constexpr float even_share = 0.01f;
 
+void find_surface(const Scene& scene, PixelDomain& domain)
+{
+    domain.surface.reset();
+    if (!scene.surfaces) return;
+    domain.surface = intersect(*scene.surfaces, domain.ray, {0.0f, infinity});
+}
+
 }  // namespace
 
 void make_pixel_domain(const FrameDomain& frame, const Ray& ray, PixelDomain& domain,
@@ -22,21 +30,38 @@ void make_pixel_domain(const FrameDomain& frame, const Ray& ray, PixelDomain& do
 {
     const Scene& scene = *frame.scene;
     domain.ray = ray;
-    domain.surface.reset();
-    if (scene.surfaces) domain.surface = intersect(*scene.surfaces, ray, {0.0f, infinity});
+    find_surface(scene, domain);
     make_ray_bins(scene.media, ray, frame.transmittance_cut, domain.bins, counts, domain.t_end());
     domain.cdf[domain.bins.count] = 0.0f;
+}
+
+void make_pixel_domains(const FrameDomain& frame, std::span<PixelDomain> domains, BinCounts& counts)
+{
+    std::vector<BinQuery> queries;
+    queries.reserve(domains.size());
+    for (PixelDomain& domain : domains) {
+        find_surface(*frame.scene, domain);
+        queries.push_back({&domain.ray, domain.t_end(), &domain.bins});
+    }
+    make_ray_bins(frame.scene->media, queries, frame.transmittance_cut, counts);
+    for (PixelDomain& domain : domains) domain.cdf[domain.bins.count] = 0.0f;
 }
 
 void weigh_bins(const FrameDomain& frame, PixelDomain& domain)
 {
     const RayBins& bins = domain.bins;
     float S[RayBins::capacity + 1];
-    float weighted = 0.0f;
-    float lost = 0.0f;
     for (int k = 0; k <= bins.count; ++k) {
         S[k] = sampled_inscatter(frame, domain.ray.at(bins.world_t(bins.s[k])), domain.wo());
     }
+    weigh_bins_by(S, weight_floor, domain);
+}
+
+void weigh_bins_by(std::span<const float> S, float least, PixelDomain& domain)
+{
+    const RayBins& bins = domain.bins;
+    float weighted = 0.0f;
+    float lost = 0.0f;
     float near = 1.0f;
     for (int k = 0; k < bins.count; ++k) {
         const float depth = bins.depth_of_bin(k);
@@ -50,7 +75,7 @@ void weigh_bins(const FrameDomain& frame, PixelDomain& domain)
     // Without light anywhere any distribution will do.
     const float mean = weighted / lost;
     const bool known = mean > 0.0f && std::isfinite(mean);
-    const float floor = known ? weight_floor * mean : 1.0f;
+    const float floor = known ? least * mean : 1.0f;
     float total = 0.0f;
     for (int k = 0; k < bins.count; ++k) {
         const float share = std::exp(-bins.tau[k]) * -std::expm1(-bins.depth_of_bin(k));

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "restir/frame_domain.h"
 #include "volumes/ray_bins.h"
@@ -30,9 +33,33 @@ struct PixelDomain {
 void make_pixel_domain(const FrameDomain& frame, const Ray& ray, PixelDomain& domain,
                        BinCounts& counts);
 
+/// The same of many rays, which are set, side by side (see make_ray_bins).
+void make_pixel_domains(const FrameDomain& frame, std::span<PixelDomain> domains,
+                        BinCounts& counts);
+
+/// Calls f(i, domain) for `count` rays ray_of(i), in order; the domains of neighbours are made side
+/// by side in `scratch`.
+template <class RayOf, class OnDomain>
+void for_each_domain(const FrameDomain& frame, size_t count, RayOf&& ray_of,
+                     std::vector<PixelDomain>& scratch, BinCounts& counts, OnDomain&& f)
+{
+    constexpr size_t at_once = 64;  // they fit the cache
+    scratch.resize(std::max(scratch.size(), std::min(at_once, count)));
+    for (size_t begin = 0; begin < count; begin += at_once) {
+        const std::span<PixelDomain> domains =
+            std::span(scratch).first(std::min(at_once, count - begin));
+        for (size_t i = 0; i < domains.size(); ++i) domains[i].ray = ray_of(begin + i);
+        make_pixel_domains(frame, domains, counts);
+        for (size_t i = 0; i < domains.size(); ++i) f(begin + i, domains[i]);
+    }
+}
+
 /// Fills cdf from the expected in-scattered light at the bins' edges. Every bin with depth gets
 /// some, whatever the caches say: a share of the ray's mean.
 void weigh_bins(const FrameDomain& frame, PixelDomain& domain);
+
+/// The same from any light in-scattered at the edges. `least`: the share.
+void weigh_bins_by(std::span<const float> inscatter, float least, PixelDomain& domain);
 
 /// A scattering event on the ray.
 struct RayPoint {

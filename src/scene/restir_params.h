@@ -137,12 +137,13 @@ struct RestirParams {
     IndirectLight indirect = IndirectLight::Auto;
     IndirectReuse indirect_reuse = IndirectReuse::Off;
     IndirectSuffix indirect_suffix = IndirectSuffix::Traced;
-    int indirect_paths = 16;    ///< paths of two and more events per pass, first in a medium
-    float node_paths = 1.0f;    ///< previews: paths from nodes per pass and pixel of smoke
-    float node_spacing = 0.0f;  ///< previews: [m]; 0: by density and pixel size
-    bool corrections = true;    ///< false: the closed form alone, a fast biased preview
-    int edge_strata = 4;        ///< camera rays per pass where a pixel sees edges or lamps: this
-                                ///< squared, [1, 16]
+    int indirect_paths = 16;      ///< paths of two and more events per pass, first in a medium
+    bool indirect_guide = false;  ///< shared paths start where the mean radiance is high
+    float node_paths = 1.0f;      ///< previews: paths from nodes per pass and pixel of smoke
+    float node_spacing = 0.0f;    ///< previews: [m]; 0: by density and pixel size
+    bool corrections = true;      ///< false: the closed form alone, a fast biased preview
+    int edge_strata = 4;          ///< camera rays per pass where a pixel sees edges or lamps: this
+                                  ///< squared, [1, 16]
     ShiftKind shift = ShiftKind::RandomNumbers;
     ReuseMis mis = ReuseMis::Auto;
     TargetVisibility visibility = TargetVisibility::Exact;

@@ -92,14 +92,21 @@ void expect_unbiased(const TestScene& scene, const test::Effort& effort, bool te
 {
     const TileStats reference = test::reference_runs(scene, effort);
     uint32_t seed = 1;
-    for (const IndirectLight indirect : {IndirectLight::Paths, IndirectLight::Shared}) {
+    struct Form {
+        const char* name;
+        IndirectLight indirect;
+        bool is_guided;
+    };
+    for (const Form& form : {Form{", paths", IndirectLight::Paths, false},
+                             Form{", shared", IndirectLight::Shared, false},
+                             Form{", shared and guided", IndirectLight::Shared, true}}) {
         RenderDescription render = test::description(scene, EstimatorKind::Restir, effort.samples);
-        render.restir.indirect = indirect;
+        render.restir.indirect = form.indirect;
+        render.restir.indirect_guide = form.is_guided;
         const TileStats tested = test::render_runs(scene, render, effort.runs, seed);
         seed += 1000;
         const RunComparison comparison = compare_runs(tested, reference);
-        const std::string text = test::summary(
-            scene.name + (indirect == IndirectLight::Paths ? ", paths" : ", shared"), comparison);
+        const std::string text = test::summary(scene.name + form.name, comparison);
         EXPECT_GT(comparison.p, test::alarm) << text;
         EXPECT_EQ(comparison.non_finite, 0) << text;
         if (tell) std::printf("%s\n", text.c_str());
